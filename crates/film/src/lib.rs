@@ -1,0 +1,1 @@
+//! Frame buffers to EXR, PNG and PLY files.

@@ -1,0 +1,1 @@
+//! A small Vulkan 1.3 backend on ash.

@@ -1,0 +1,1 @@
+//! Subdivision surfaces on the GPU: upload, subdivide, limit, draw.

@@ -1,0 +1,1 @@
+//! The GLSL of glsl/ as SPIR-V, with generated Rust structs.

@@ -1,0 +1,2 @@
+//! Control meshes, subdivision rules, refinement, tables and the CPU evaluator.
+pub mod mesh;

