@@ -1,10 +1,15 @@
 //! The control mesh (cage): positions, faces and the tags that OpenSubdiv's users rely on.
 
+use crate::error::Error;
+
 /// Sharpness from which an edge or a vertex counts as infinitely sharp (OpenSubdiv's `SHARPNESS_INFINITE`).
 pub const INFINITE_SHARPNESS: f32 = 10.0;
 
 /// Largest number of sides that a face may have; a bound on what a file can claim, far above any real pole.
 pub const MAX_FACE_SIDES: u32 = 1 << 20;
+
+/// Bound on points, half-edges and faces of a level: indices are 32 bits and the last one means "none".
+pub const MAX_ELEMENTS: u32 = 1 << 31;
 
 /// How boundary edges and vertices of one face shape the limit surface (`interpolateboundary`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -129,4 +134,71 @@ pub struct ControlMesh {
     pub edits: Vec<HierarchicalEdit>,
     /// Options.
     pub options: MeshOptions,
+}
+
+impl ControlMesh {
+    /// Number of faces.
+    pub fn face_count(&self) -> u32 {
+        self.face_sizes.len() as u32
+    }
+
+    /// The axis-aligned bounding box of all positions, or `None` without positions.
+    pub fn bounding_box(&self) -> Option<[[f32; 3]; 2]> {
+        let first = *self.positions.first()?;
+        Some(self.positions.iter().fold([first, first], |[mut low, mut high], p| {
+            for axis in 0..3 {
+                low[axis] = low[axis].min(p[axis]);
+                high[axis] = high[axis].max(p[axis]);
+            }
+            [low, high]
+        }))
+    }
+
+    /// Number of Ptex faces: a quad is one, any other face one a side.
+    pub fn ptex_face_count(&self) -> u64 {
+        self.face_sizes.iter().map(|&n| if n == 4 { 1 } else { u64::from(n) }).sum()
+    }
+
+    /// Checks what refinement relies on: indices in range, at least three different vertices a face, finite positions.
+    pub fn validate(&self) -> Result<(), Error> {
+        if self.face_sizes.is_empty() {
+            return Err(Error::Empty);
+        }
+        let expected = self.face_sizes.iter().map(|&n| u64::from(n)).sum::<u64>();
+        let found = self.face_vertices.len() as u64;
+        if expected != found {
+            return Err(Error::FaceList { expected, found });
+        }
+        if found >= u64::from(MAX_ELEMENTS) || self.positions.len() as u64 >= u64::from(MAX_ELEMENTS) {
+            return Err(Error::TooLarge { level: 0, count: found.max(self.positions.len() as u64) });
+        }
+        if let Some(vertex) = self.positions.iter().position(|p| p.iter().any(|c| !c.is_finite())) {
+            return Err(Error::NotFinite { vertex: vertex as u32 });
+        }
+        let in_range = |what, index: u32, count: usize| {
+            let count = count as u32;
+            if index < count { Ok(()) } else { Err(Error::OutOfRange { what, index, count }) }
+        };
+        let (mut first, mut seen_in) = (0, vec![u32::MAX; self.positions.len()]);
+        for (face, &sides) in self.face_sizes.iter().enumerate() {
+            let face = face as u32;
+            if !(3..=MAX_FACE_SIDES).contains(&sides) {
+                return Err(Error::FaceSides { face, sides });
+            }
+            for &vertex in &self.face_vertices[first..first + sides as usize] {
+                in_range("vertex", vertex, self.positions.len())?;
+                if std::mem::replace(&mut seen_in[vertex as usize], face) == face {
+                    return Err(Error::RepeatedVertex { face, vertex });
+                }
+            }
+            first += sides as usize;
+        }
+        for &hole in &self.holes {
+            in_range("hole", hole, self.face_sizes.len())?;
+        }
+        for vertex in self.creases.iter().flat_map(|c| c.vertices).chain(self.corners.iter().map(|c| c.vertex)) {
+            in_range("vertex", vertex, self.positions.len())?;
+        }
+        Ok(())
+    }
 }

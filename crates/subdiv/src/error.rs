@@ -1,0 +1,86 @@
+//! What can be wrong with a cage.
+
+use thiserror::Error;
+
+/// Why a cage cannot be refined. One line each; vertices and faces are counted from 0.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The mesh has no face.
+    #[error("the mesh has no faces")]
+    Empty,
+    /// The sizes of the faces do not add up to the list of face vertices.
+    #[error("the faces' sizes add up to {expected} vertices, but {found} are listed")]
+    FaceList {
+        /// Sum of the sizes.
+        expected: u64,
+        /// Entries found.
+        found: u64,
+    },
+    /// A face has fewer than three sides or far too many.
+    #[error("face {face} has {sides} sides; expected 3 to {max}", max = crate::mesh::MAX_FACE_SIDES)]
+    FaceSides {
+        /// The face.
+        face: u32,
+        /// Its number of sides.
+        sides: u32,
+    },
+    /// An index points past the end of what it names.
+    #[error("{what} {index} is out of range: there are {count}")]
+    OutOfRange {
+        /// What the index names.
+        what: &'static str,
+        /// The index.
+        index: u32,
+        /// How many there are.
+        count: u32,
+    },
+    /// A face names a vertex twice.
+    #[error("face {face} names vertex {vertex} twice")]
+    RepeatedVertex {
+        /// The face.
+        face: u32,
+        /// The vertex.
+        vertex: u32,
+    },
+    /// An edge has more than two faces, or two that run the same way along it.
+    #[error("the edge between vertices {0} and {1} is not manifold (more than two faces, or two of opposite orientation); such cages are not supported yet", vertices[0], vertices[1])]
+    NonManifoldEdge {
+        /// The edge's vertices.
+        vertices: [u32; 2],
+    },
+    /// The faces at a vertex form more than one fan.
+    #[error("the faces at vertex {vertex} form more than one fan; non-manifold cages are not supported yet")]
+    NonManifoldVertex {
+        /// The vertex.
+        vertex: u32,
+    },
+    /// The mesh has a feature whose rules are not there yet.
+    #[error("the mesh has {feature}, which is not supported yet")]
+    Unsupported {
+        /// Plural name of the feature.
+        feature: &'static str,
+    },
+    /// A position is NaN or infinite.
+    #[error("vertex {vertex} has a coordinate that is not finite")]
+    NotFinite {
+        /// The vertex.
+        vertex: u32,
+    },
+    /// The tables would need indices of more than 32 bits.
+    #[error("level {level} would have {count} elements; at most 2^31 can be indexed")]
+    TooLarge {
+        /// The level.
+        level: u32,
+        /// How many elements it would have.
+        count: u64,
+    },
+    /// More levels were asked for than the tables can number.
+    #[error("max level {asked} is out of range: expected 0 to {max}")]
+    MaxLevel {
+        /// Level asked for.
+        asked: u32,
+        /// Largest level.
+        max: u32,
+    },
+}

@@ -1,0 +1,187 @@
+//! The limit surface at any (Ptex face, u, v) on the CPU, in double precision: the project's second oracle.
+//!
+//! The face is split by the plain rules of FAS section 3.1 until the piece that holds the point is a bicubic patch, or
+//! the point is a corner, where the limit mask answers. Points are kept relative to an origin of the piece, so that
+//! derivatives do not lose digits however deep it goes.
+
+use crate::error::Error;
+use crate::limit::limit_mask;
+use crate::mesh::ControlMesh;
+use crate::patch::{SurfacePoint, control_points, evaluate, reflect};
+use crate::refine::{Split, split_level};
+use crate::topology::Level;
+
+/// Pieces smaller than this fraction of a base face are taken as their corner.
+const MAX_DEPTH: u32 = 60;
+
+/// Evaluates the limit surface of one cage.
+#[derive(Debug)]
+pub struct Evaluator {
+    level: Level,
+    points: Vec<[f64; 3]>,
+    /// Base face and side of each Ptex face.
+    ptex: Vec<(u32, u32)>,
+    /// The base face that was asked for last, with the pieces made for it.
+    cached: Option<(u32, Piece)>,
+}
+
+impl Evaluator {
+    /// Prepares a cage; fails as refinement does.
+    pub fn new(mesh: &ControlMesh) -> Result<Self, Error> {
+        let level = Level::from_mesh(mesh)?;
+        let ptex = (0..)
+            .zip(&mesh.face_sizes)
+            .flat_map(|(face, &sides)| (0..if sides == 4 { 1 } else { sides }).map(move |side| (face, side)))
+            .collect();
+        let points = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
+        Ok(Self { level, points, ptex, cached: None })
+    }
+
+    /// Number of Ptex faces.
+    pub fn ptex_face_count(&self) -> u32 {
+        self.ptex.len() as u32
+    }
+
+    /// The limit at (u, v) of a Ptex face, both 0 to 1; `None` if the face has none (a hole, or a boundary face without
+    /// boundary interpolation) or does not exist. Derivatives are those along the Ptex face's u and v, except at
+    /// irregular corners, where they are two vectors that span the tangent plane.
+    pub fn evaluate(&mut self, ptex_face: u32, u: f64, v: f64) -> Option<SurfacePoint> {
+        let &(face, side) = self.ptex.get(ptex_face as usize)?;
+        if !self.level.is_drawn(face) {
+            return None;
+        }
+        if self.cached.as_ref().is_none_or(|(cached, _)| *cached != face) {
+            self.cached = Some((face, Piece::new(self.level.clone(), self.points.clone(), face, [0.0; 3], 0)));
+        }
+        let (_, piece) = self.cached.as_mut()?;
+        Some(if piece.level.sides(face) == 4 { piece.evaluate(u, v) } else { piece.child(side).evaluate(u, v) })
+    }
+}
+
+/// A face with what surrounds it, and its children as they are asked for.
+#[derive(Debug)]
+struct Piece {
+    level: Level,
+    /// Relative to `origin`.
+    points: Vec<[f64; 3]>,
+    origin: [f64; 3],
+    face: u32,
+    depth: u32,
+    children: Vec<Option<Piece>>,
+}
+
+impl Piece {
+    fn new(level: Level, mut points: Vec<[f64; 3]>, face: u32, origin: [f64; 3], depth: u32) -> Self {
+        let base = points[level.vertices(face)[0] as usize];
+        points.iter_mut().for_each(|p| *p = add(*p, base, -1.0));
+        let sides = level.sides(face) as usize;
+        Self {
+            level,
+            points,
+            origin: add(origin, base, 1.0),
+            face,
+            depth,
+            children: (0..sides).map(|_| None).collect(),
+        }
+    }
+
+    fn evaluate(&mut self, u: f64, v: f64) -> SurfacePoint {
+        if self.level.is_regular(self.face) {
+            let (indices, boundary) = control_points(&self.level, self.face);
+            let mut points = indices.map(|i| self.points[i as usize]);
+            reflect(&mut points, boundary);
+            return self.placed(evaluate(&points, u, v), (f64::from(self.depth)).exp2());
+        }
+        let corner = match (u, v) {
+            (0.0, 0.0) => Some(0),
+            (1.0, 0.0) => Some(1),
+            (1.0, 1.0) => Some(2),
+            (0.0, 1.0) => Some(3),
+            _ if self.depth >= MAX_DEPTH => Some(0),
+            _ => None,
+        };
+        let vertices = self.level.vertices(self.face);
+        if let Some(vertex) = corner.map(|i: usize| vertices[i]).filter(|&v| self.level.tag(v).touches_only_quads()) {
+            return self.placed(self.limit(vertex), 1.0);
+        }
+        let (i, low_u, low_v) = match (u > 0.5, v > 0.5) {
+            (false, false) => (0, 0.0, 0.0),
+            (true, false) => (1, 0.5, 0.0),
+            (true, true) => (2, 0.5, 0.5),
+            (false, true) => (3, 0.0, 0.5),
+        };
+        self.child(i).evaluate(2.0 * (u - low_u), 2.0 * (v - low_v))
+    }
+
+    fn child(&mut self, i: u32) -> &mut Self {
+        let slot = &mut self.children[i as usize];
+        slot.get_or_insert_with(|| {
+            // The split fails only on counts that one face's neighbourhood cannot reach.
+            let (split, child) = split_level(&self.level, &[self.face], self.depth + 1).expect("one face's ring");
+            let points = subdivide_points(&self.level, &split, &self.points);
+            Self::new(child, points, i, self.origin, self.depth + 1)
+        })
+    }
+
+    fn limit(&self, vertex: u32) -> SurfacePoint {
+        let (points, weights) = limit_mask(&self.level, vertex);
+        let mut result = SurfacePoint::default();
+        for (point, weight) in points.iter().zip(weights) {
+            let p = add(self.points[*point as usize], self.points[points[0] as usize], -1.0);
+            result.position = add(result.position, p, weight[0]);
+            result.du = add(result.du, p, weight[1]);
+            result.dv = add(result.dv, p, weight[2]);
+        }
+        result.position = add(result.position, self.points[points[0] as usize], 1.0);
+        result
+    }
+
+    fn placed(&self, point: SurfacePoint, derivative_scale: f64) -> SurfacePoint {
+        SurfacePoint {
+            position: add(point.position, self.origin, 1.0),
+            du: point.du.map(|c| c * derivative_scale),
+            dv: point.dv.map(|c| c * derivative_scale),
+        }
+    }
+}
+
+/// The points of a split in f64 by the rules as FAS section 3.1 prints them: face points first, then edges and vertices
+/// from them. Written apart from the stencils, which it checks.
+pub fn subdivide_points(parent: &Level, split: &Split, points: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let at = |vertex: u32| points[vertex as usize];
+    let centre = |face: u32| {
+        let vertices = parent.vertices(face);
+        vertices.iter().fold([0.0; 3], |sum, &v| add(sum, at(v), 1.0 / vertices.len() as f64))
+    };
+    let vertex_point = |vertex: u32| {
+        let tag = parent.tag(vertex);
+        let spokes: Vec<u32> = parent.spokes(vertex).collect();
+        if tag.is_corner() {
+            return at(vertex);
+        }
+        if tag.is_boundary() {
+            let (first, last) = (parent.head(spokes[0]), parent.origin(parent.previous(spokes[spokes.len() - 1])));
+            return add(add(at(vertex).map(|c| 0.75 * c), at(first), 0.125), at(last), 0.125);
+        }
+        let n = spokes.len() as f64;
+        spokes.iter().fold(at(vertex).map(|c| c * (n - 2.0) / n), |sum, &spoke| {
+            let sum = add(sum, at(parent.head(spoke)), 1.0 / (n * n));
+            add(sum, centre(parent.face(spoke)), 1.0 / (n * n))
+        })
+    };
+    let edge_point = |half_edge: u32| {
+        let (a, b) = (at(parent.origin(half_edge)), at(parent.head(half_edge)));
+        if parent.is_boundary(half_edge) {
+            return add(a.map(|c| 0.5 * c), b, 0.5);
+        }
+        let sides = [parent.face(half_edge), parent.face(parent.twin(half_edge))];
+        sides.iter().fold(add(a.map(|c| 0.25 * c), b, 0.25), |sum, &face| add(sum, centre(face), 0.25))
+    };
+    let vertices = split.vertices.iter().map(|&v| vertex_point(v));
+    let edges = split.edges.iter().map(|&e| edge_point(e));
+    vertices.chain(edges).chain(split.faces.iter().map(|&f| centre(f))).collect()
+}
+
+fn add(a: [f64; 3], b: [f64; 3], weight: f64) -> [f64; 3] {
+    [a[0] + weight * b[0], a[1] + weight * b[1], a[2] + weight * b[2]]
+}

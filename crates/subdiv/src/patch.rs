@@ -1,0 +1,223 @@
+//! Leaf patches: which points a face's limit surface is made of, and how they are evaluated.
+
+use crate::topology::{Level, Location, NONE};
+
+/// Where a patch lies, which level it is of and what it borders, in two words.
+///
+/// | word | bits | meaning |
+/// |---|---|---|
+/// | `corner` | 0-15 | u of the lower corner, in units of 2^-depth |
+/// | | 16-31 | v of the lower corner |
+/// | `flags` | 0-4 | depth: halvings of the Ptex face |
+/// | | 5-9 | level of subdivision |
+/// | | 10-13 | boundary edges: their row of control points is a reflection |
+/// | | 14-17 | transition edges: the neighbour was split |
+/// | | 18-21 | leaf edges: the neighbour is an irregular leaf of the last level |
+///
+/// Edge i runs from corner i to corner i + 1: 0 is v = 0, 1 is u = 1, 2 is v = 1, 3 is u = 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PatchInfo {
+    /// Location and level.
+    pub location: Location,
+    /// Level of subdivision.
+    pub level: u8,
+    /// Boundary edges, one bit each.
+    pub boundary: u8,
+    /// Edges whose neighbour was split, one bit each.
+    pub transition: u8,
+    /// Edges whose neighbour is an irregular leaf, one bit each.
+    pub leaf: u8,
+}
+
+impl PatchInfo {
+    /// `[ptex face, corner, flags]`; the table above.
+    pub fn pack(&self) -> [u32; 3] {
+        let l = &self.location;
+        let flags = u32::from(l.depth)
+            | u32::from(self.level) << 5
+            | u32::from(self.boundary) << 10
+            | u32::from(self.transition) << 14
+            | u32::from(self.leaf) << 18;
+        [l.ptex_face, u32::from(l.u) | u32::from(l.v) << 16, flags]
+    }
+
+    /// The inverse of [`Self::pack`].
+    pub fn unpack([ptex_face, corner, flags]: [u32; 3]) -> Self {
+        let field = |shift: u32, bits: u32| (flags >> shift & ((1 << bits) - 1)) as u8;
+        Self {
+            location: Location { ptex_face, u: corner as u16, v: (corner >> 16) as u16, depth: field(0, 5) },
+            level: field(5, 5),
+            boundary: field(10, 4),
+            transition: field(14, 4),
+            leaf: field(18, 4),
+        }
+    }
+}
+
+/// A bicubic B-spline patch of one level: 16 control points, row by row (v), u running fastest, and where it lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RegularPatch {
+    /// Indices of the control points; where `info.boundary` says that a row is a reflection its entries are unused
+    /// and name a corner of the face.
+    pub points: [u32; 16],
+    /// Where it lies and what it borders.
+    pub info: PatchInfo,
+}
+
+/// An irregular face of the last level, drawn between limit points (FAS section 4.1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FillingQuad {
+    /// Limit points at (0,0), (1,0), (1,1), (0,1).
+    pub corners: [u32; 4],
+    /// Where it lies.
+    pub info: PatchInfo,
+}
+
+/// Place in the 4 x 4 control points of each corner of the face.
+const CORNERS: [usize; 4] = [5, 6, 10, 9];
+/// Places of the two points across edge i, beside its first and its second vertex.
+const ACROSS: [[usize; 2]; 4] = [[1, 2], [7, 11], [14, 13], [8, 4]];
+/// Place of the point diagonally across corner i.
+const DIAGONAL: [usize; 4] = [0, 3, 15, 12];
+
+/// The control points of a regular face, as vertices of its level, and the mask of its boundary edges.
+///
+/// Where an edge is on the boundary its outer row is left to [`reflect`]; such entries name corner 0 of the face.
+pub fn control_points(level: &Level, face: u32) -> ([u32; 16], u8) {
+    let edges = level.half_edges(face);
+    let mut points = [level.origin(edges.start); 16];
+    let mut boundary = 0;
+    for (i, half_edge) in edges.clone().enumerate() {
+        points[CORNERS[i]] = level.origin(half_edge);
+        let twin = level.twin(half_edge);
+        debug_assert_ne!(twin, NONE, "a drawn face has its whole one-ring");
+        if twin == half_edge {
+            boundary |= 1 << i;
+            continue;
+        }
+        // The neighbour's half-edges from the twin on: back along the edge, out from corner i, across, and back in.
+        let out = level.next(twin);
+        let across = level.next(out);
+        points[ACROSS[i][0]] = level.origin(across);
+        points[ACROSS[i][1]] = level.head(across);
+        let diagonal = level.twin(out);
+        if diagonal != out {
+            points[DIAGONAL[i]] = level.origin(level.previous(diagonal));
+        }
+    }
+    (points, boundary)
+}
+
+/// Fills in the reflected rows of control points: 2 P - Q across each boundary edge of the mask.
+pub fn reflect(points: &mut [[f64; 3]; 16], boundary: u8) {
+    let mut set = |at: usize, near: usize, far: usize| {
+        points[at] = std::array::from_fn(|c| 2.0 * points[near][c] - points[far][c]);
+    };
+    // Columns first (u = 0 and u = 1), over the rows that exist; then whole rows, which makes the outer corners too.
+    for row in 0..4 {
+        if boundary & 8 != 0 {
+            set(4 * row, 4 * row + 1, 4 * row + 2);
+        }
+        if boundary & 2 != 0 {
+            set(4 * row + 3, 4 * row + 2, 4 * row + 1);
+        }
+    }
+    for column in 0..4 {
+        if boundary & 1 != 0 {
+            set(column, 4 + column, 8 + column);
+        }
+        if boundary & 4 != 0 {
+            set(12 + column, 8 + column, 4 + column);
+        }
+    }
+}
+
+/// Uniform cubic B-spline basis and its derivative at t (FAS section 5.1, divided by 6 and by 2).
+pub fn cubic_basis(t: f64) -> ([f64; 4], [f64; 4]) {
+    let s = 1.0 - t;
+    (
+        [
+            s * s * s / 6.0,
+            (4.0 * s * s * s + t * t * t + 12.0 * s * t * s + 6.0 * t * s * t) / 6.0,
+            (4.0 * t * t * t + s * s * s + 12.0 * t * s * t + 6.0 * s * t * s) / 6.0,
+            t * t * t / 6.0,
+        ],
+        [-s * s / 2.0, (-t * t - 4.0 * t * s) / 2.0, (s * s + 4.0 * s * t) / 2.0, t * t / 2.0],
+    )
+}
+
+/// A point of the limit surface with its first derivatives.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SurfacePoint {
+    /// Position.
+    pub position: [f64; 3],
+    /// Derivative along u.
+    pub du: [f64; 3],
+    /// Derivative along v.
+    pub dv: [f64; 3],
+}
+
+impl SurfacePoint {
+    /// The unit normal, or `None` where the derivatives do not span a plane.
+    pub fn normal(&self) -> Option<[f64; 3]> {
+        let (a, b) = (self.du, self.dv);
+        let n = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+        let length = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let size = length(n);
+        (size > 1e-9 * length(a) * length(b)).then(|| n.map(|c| c / size))
+    }
+}
+
+/// Evaluates a bicubic B-spline patch at (u, v) in its own domain.
+pub fn evaluate(points: &[[f64; 3]; 16], u: f64, v: f64) -> SurfacePoint {
+    let ((nu, du), (nv, dv)) = (cubic_basis(u), cubic_basis(v));
+    let mut result = SurfacePoint::default();
+    for row in 0..4 {
+        for column in 0..4 {
+            for (c, p) in points[4 * row + column].into_iter().enumerate() {
+                result.position[c] += nu[column] * nv[row] * p;
+                result.du[c] += du[column] * nv[row] * p;
+                result.dv[c] += nu[column] * dv[row] * p;
+            }
+        }
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patch_info_survives_packing() {
+        let info = PatchInfo {
+            location: Location { ptex_face: 1_234_567, u: 65_535, v: 4_711, depth: 16 },
+            level: 15,
+            boundary: 0b1001,
+            transition: 0b0110,
+            leaf: 0b1111,
+        };
+        assert_eq!(PatchInfo::unpack(info.pack()), info);
+    }
+
+    #[test]
+    fn basis_sums_to_one_and_its_derivative_to_zero() {
+        for i in 0..=16 {
+            let (n, d) = cubic_basis(f64::from(i) / 16.0);
+            assert!((n.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+            assert!(d.iter().sum::<f64>().abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_reflected_corner_is_interpolated() {
+        let mut points: [[f64; 3]; 16] =
+            std::array::from_fn(|i| [(i % 4) as f64, (i / 4) as f64, (i * i) as f64 * 0.1]);
+        let corner = points[5];
+        reflect(&mut points, 0b1001);
+        let got = evaluate(&points, 0.0, 0.0).position;
+        for c in 0..3 {
+            assert!((got[c] - corner[c]).abs() < 1e-14);
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! Feature-adaptive refinement (FAS section 3.3): topology only, one level after another.
+//!
+//! Of each level the irregular faces are split. What the next level must hold follows from their corners, the *core*:
+//! around every core vertex, the child at that vertex of every face there. Then each child of a split face has its
+//! whole one-ring, which is what a bicubic patch or a limit mask reads, and nothing else is made.
+
+use crate::error::Error;
+use crate::mesh::{ControlMesh, MAX_ELEMENTS};
+use crate::topology::{Level, Location, NONE, VertexTag};
+
+/// Deepest level: locations have 16 bits, and single precision points carry no more.
+pub const MAX_LEVEL: u32 = 15;
+
+/// What to refine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RefineOptions {
+    /// No irregularity is isolated deeper; at most [`MAX_LEVEL`].
+    pub max_level: u32,
+    /// Split every face of every level (the global refinement that FAS section 8.1 compares with).
+    pub uniform: bool,
+    /// Keep one more level of points under the irregular faces of the last level, for the limits of the middles of
+    /// their edges: fractional-even spacing has two segments an edge at least.
+    pub midpoints: bool,
+}
+
+/// How a level came from the one before: its points in order are the children of `vertices`, `edges` and `faces`.
+#[derive(Clone, Debug, Default)]
+pub struct Split {
+    /// Parent vertices, each with all its faces.
+    pub vertices: Vec<u32>,
+    /// One half-edge of each parent edge.
+    pub edges: Vec<u32>,
+    /// Parent faces.
+    pub faces: Vec<u32>,
+    /// For each child face, the parent half-edge that starts at the corner it holds.
+    pub child_corners: Vec<u32>,
+}
+
+impl Split {
+    /// Number of points that the split makes.
+    pub fn point_count(&self) -> usize {
+        self.vertices.len() + self.edges.len() + self.faces.len()
+    }
+}
+
+/// A cage refined towards its irregularities.
+#[derive(Clone, Debug)]
+pub struct Refinement {
+    /// Levels 0 to [`Self::last_level`], and one more if there are midpoints.
+    pub levels: Vec<Level>,
+    /// `splits[k]` made level k + 1.
+    pub splits: Vec<Split>,
+    /// `split_faces[k]` are the faces of level k that were split; of the last level, the irregular leaves.
+    pub irregular_faces: Vec<Vec<u32>>,
+    /// The level at which irregular faces are left.
+    pub last_level: u32,
+    /// What was asked for.
+    pub options: RefineOptions,
+}
+
+impl Refinement {
+    /// Refines a cage. A mesh with faces that are no quads is split once at least: their children are quads, and only
+    /// then a limit mask exists at their corners.
+    pub fn new(mesh: &ControlMesh, options: RefineOptions) -> Result<Self, Error> {
+        if options.max_level > MAX_LEVEL {
+            return Err(Error::MaxLevel { asked: options.max_level, max: MAX_LEVEL });
+        }
+        refuse_unsupported(mesh)?;
+        let has_non_quads = mesh.face_sizes.iter().any(|&n| n != 4);
+        let last_level = options.max_level.max(u32::from(has_non_quads));
+        let mut refinement = Self {
+            levels: vec![Level::from_mesh(mesh)?],
+            splits: Vec::new(),
+            irregular_faces: Vec::new(),
+            last_level,
+            options,
+        };
+        for k in 0..=last_level {
+            let level = &refinement.levels[k as usize];
+            let irregular: Vec<u32> = (0..level.drawn_count)
+                .filter(|&face| level.is_drawn(face) && (options.uniform || !level.is_regular(face)))
+                .collect();
+            if k < last_level || options.midpoints {
+                let (split, child) = split_level(level, &irregular, k + 1)?;
+                refinement.splits.push(split);
+                refinement.levels.push(child);
+            }
+            refinement.irregular_faces.push(irregular);
+        }
+        Ok(refinement)
+    }
+
+    /// Whether a face of a level was split, or is left as an irregular leaf at the last level. Faces are in ascending order.
+    pub fn irregular_flags(&self, level: u32) -> Vec<bool> {
+        let mut flags = vec![false; self.levels[level as usize].face_count() as usize];
+        for &face in &self.irregular_faces[level as usize] {
+            flags[face as usize] = true;
+        }
+        flags
+    }
+}
+
+fn refuse_unsupported(mesh: &ControlMesh) -> Result<(), Error> {
+    use crate::mesh::TriangleSubdivision::Smooth;
+    let unsupported = |feature| Err(Error::Unsupported { feature });
+    if mesh.creases.iter().any(|crease| crease.sharpness > 0.0) {
+        return unsupported("creases");
+    }
+    if mesh.corners.iter().any(|corner| corner.sharpness > 0.0) {
+        return unsupported("sharp vertices");
+    }
+    if !mesh.edits.is_empty() {
+        return unsupported("hierarchical edits");
+    }
+    if mesh.options.triangles == Smooth && mesh.face_sizes.contains(&3) {
+        return unsupported("smooth triangles");
+    }
+    Ok(())
+}
+
+/// Maps from the elements of a level to those of the next one that they become; [`NONE`] where they do not.
+struct Children {
+    /// Half-edge to the child face at its origin.
+    faces: Vec<u32>,
+    /// Half-edge to the place of its edge in [`Split::edges`].
+    edges: Vec<u32>,
+    /// Face to its place in [`Split::faces`].
+    centres: Vec<u32>,
+    /// Vertex to its place in [`Split::vertices`].
+    vertices: Vec<u32>,
+}
+
+/// Splits the given faces of a level; returns what became of what, and the next level.
+pub(crate) fn split_level(parent: &Level, faces: &[u32], child_level: u32) -> Result<(Split, Level), Error> {
+    let mut split = Split::default();
+    let half_edge_count = parent.origins.len();
+    let mut children = Children {
+        faces: vec![NONE; half_edge_count],
+        edges: vec![NONE; half_edge_count],
+        centres: vec![NONE; parent.face_count() as usize],
+        vertices: vec![NONE; parent.tags.len()],
+    };
+    let mut locations = Vec::with_capacity(4 * faces.len());
+    for &face in faces {
+        let is_quad = parent.sides(face) == 4;
+        let location = parent.locations[face as usize];
+        for (i, half_edge) in (0..).zip(parent.half_edges(face)) {
+            children.faces[half_edge as usize] = split.child_corners.len() as u32;
+            split.child_corners.push(half_edge);
+            locations.push(if is_quad {
+                location.quarter(i)
+            } else {
+                Location { ptex_face: location.ptex_face + i, ..location }
+            });
+            let vertex = parent.origin(half_edge);
+            if children.vertices[vertex as usize] == NONE {
+                children.vertices[vertex as usize] = split.vertices.len() as u32;
+                split.vertices.push(vertex);
+            }
+        }
+    }
+    collect_rings(parent, &mut split, &mut children);
+    let half_edges = 4 * split.child_corners.len() as u64;
+    if half_edges >= u64::from(MAX_ELEMENTS) {
+        return Err(Error::TooLarge { level: child_level, count: half_edges });
+    }
+    let mut child = connect_children(parent, &split, &children);
+    child.drawn_count = locations.len() as u32;
+    child.locations = locations;
+    tag_children(parent, &split, &children, &mut child);
+    Ok((split, child))
+}
+
+/// Finds the edges and faces around the core, and the children of the faces that only support it.
+fn collect_rings(parent: &Level, split: &mut Split, children: &mut Children) {
+    for i in 0..split.vertices.len() {
+        for spoke in parent.spokes(split.vertices[i]) {
+            let face = parent.face(spoke);
+            if children.faces[spoke as usize] == NONE {
+                children.faces[spoke as usize] = split.child_corners.len() as u32;
+                split.child_corners.push(spoke);
+            }
+            if children.centres[face as usize] == NONE {
+                children.centres[face as usize] = split.faces.len() as u32;
+                split.faces.push(face);
+            }
+            // The incoming edge is the next spoke's, except on the boundary, where it has no outgoing half-edge.
+            for half_edge in [spoke, parent.previous(spoke)] {
+                if children.edges[half_edge as usize] == NONE {
+                    let edge = split.edges.len() as u32;
+                    split.edges.push(half_edge);
+                    children.edges[half_edge as usize] = edge;
+                    children.edges[parent.twin(half_edge) as usize] = edge;
+                }
+            }
+        }
+    }
+}
+
+/// The place of corner `j` of a child face (0: the parent's vertex, then counter-clockwise: edge point, centre, edge
+/// point) among its half-edges. Children of quads are turned so that their u and v run as their parent's.
+fn child_half_edge(child_face: u32, parent: &Level, parent_half_edge: u32, j: u32) -> u32 {
+    let edges = parent.half_edges(parent.face(parent_half_edge));
+    let turn = if edges.end - edges.start == 4 { parent_half_edge - edges.start } else { 0 };
+    4 * child_face + (j + turn) % 4
+}
+
+fn connect_children(parent: &Level, split: &Split, children: &Children) -> Level {
+    let half_edge_count = 4 * split.child_corners.len();
+    let (mut origins, mut twins) = (vec![NONE; half_edge_count], vec![NONE; half_edge_count]);
+    let first_edge = split.vertices.len() as u32;
+    let first_face = first_edge + split.edges.len() as u32;
+    let child_of = |corner: u32, j: u32| match children.faces[corner as usize] {
+        NONE => NONE,
+        face => child_half_edge(face, parent, corner, j),
+    };
+    for (face, &corner) in (0..).zip(&split.child_corners) {
+        let previous = parent.previous(corner);
+        let at = |j: u32| child_half_edge(face, parent, corner, j);
+        origins[at(0) as usize] = children.vertices[parent.origin(corner) as usize];
+        origins[at(1) as usize] = first_edge + children.edges[corner as usize];
+        origins[at(2) as usize] = first_face + children.centres[parent.face(corner) as usize];
+        origins[at(3) as usize] = first_edge + children.edges[previous as usize];
+        let (twin, previous_twin) = (parent.twin(corner), parent.twin(previous));
+        // Both halves of an edge of a core vertex are there; siblings only if their own corner is core.
+        twins[at(0) as usize] = if twin == corner { at(0) } else { child_of(parent.next(twin), 3) };
+        twins[at(1) as usize] = child_of(parent.next(corner), 2);
+        twins[at(2) as usize] = child_of(previous, 1);
+        twins[at(3) as usize] = if previous_twin == previous { at(3) } else { child_of(previous_twin, 0) };
+    }
+    Level::of_quads(origins, twins)
+}
+
+fn tag_children(parent: &Level, split: &Split, children: &Children, child: &mut Level) {
+    let count = split.point_count();
+    child.tags.reserve_exact(count);
+    child.starts.reserve_exact(count);
+    let at = |corner: u32, j: u32| match children.faces[corner as usize] {
+        NONE => NONE,
+        face => child_half_edge(face, parent, corner, j),
+    };
+    for &vertex in &split.vertices {
+        child.tags.push(parent.tag(vertex).child());
+        child.starts.push(at(parent.starts[vertex as usize], 0));
+    }
+    for &edge in &split.edges {
+        let boundary = parent.is_boundary(edge);
+        child.tags.push(VertexTag::new(if boundary { 2 } else { 4 }, boundary, false, false));
+        // On the boundary the outgoing boundary half-edge runs to the edge's head; inside any will do.
+        child.starts.push(if boundary { at(parent.next(edge), 3) } else { at(edge, 1) });
+    }
+    for &face in &split.faces {
+        child.tags.push(VertexTag::new(parent.sides(face), false, false, false));
+        child.starts.push(parent.half_edges(face).map(|corner| at(corner, 2)).find(|&h| h != NONE).unwrap_or(NONE));
+    }
+}

@@ -1,0 +1,188 @@
+//! Catmull-Clark's masks: weights only, no topology.
+//!
+//! Refinement masks are FAS section 3.1 with the face points substituted, so that every weight is one of the level
+//! before. Limit masks: Halstead, Kass and DeRose 1993 (smooth vertices), Biermann, Levin and Zorin 2000 (boundary
+//! tangents).
+
+use std::f64::consts::PI;
+
+/// Weights of a smooth vertex of valence n whose faces are all quads, for refinement or for its limit position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VertexMask {
+    /// Weight of the vertex itself.
+    pub vertex: f64,
+    /// Weight of each of the n vertices at the other end of an incident edge.
+    pub edge: f64,
+    /// Weight of each of the n vertices opposite in an incident face.
+    pub face: f64,
+}
+
+/// Weight of each end of an interior edge between two quads: (v + e + f + f) / 4 with the face points substituted.
+pub const EDGE_END: f64 = 3.0 / 8.0;
+/// Weight of each of the other four vertices of the two quads at an interior edge.
+pub const EDGE_FAR: f64 = 1.0 / 16.0;
+/// Weight of each neighbour along a boundary or crease in the vertex rule.
+pub const CREASE_END: f64 = 1.0 / 8.0;
+/// Weight of each neighbour along a boundary or crease in the limit position.
+pub const CREASE_LIMIT_END: f64 = 1.0 / 6.0;
+
+/// Vertex rule of a smooth vertex: (n-2)/n v + 1/n^2 sum e + 1/n^2 sum f (FAS 3.1), face points substituted.
+pub fn smooth_vertex(valence: u32) -> VertexMask {
+    let n = f64::from(valence);
+    VertexMask { vertex: (n - 2.0) / n + 0.25 / n, edge: 1.5 / (n * n), face: 0.25 / (n * n) }
+}
+
+/// Limit position of a smooth vertex: (n^2 v + 4 sum e + sum f) / (n (n + 5)) (Halstead et al. 1993).
+pub fn smooth_limit(valence: u32) -> VertexMask {
+    let n = f64::from(valence);
+    let denominator = n * (n + 5.0);
+    VertexMask { vertex: n / (n + 5.0), edge: 4.0 / denominator, face: 1.0 / denominator }
+}
+
+/// Tangent weights of edge i and of the face between the edges i and i + 1, counter-clockwise, at a smooth vertex.
+///
+/// The two tangents are the left eigenvectors of the subdominant eigenvalue; their cross product is the outward normal.
+/// A valence of 2 has no subdominant pair: all three next eigenvalues are of magnitude 1/4, so the surface has no
+/// tangent plane there in general; the edges' and the faces' differences are the useful answer.
+/// Returns `([edge for t1, t2], [face for t1, t2])`.
+pub fn smooth_tangents(valence: u32, i: u32) -> ([f64; 2], [f64; 2]) {
+    if valence == 2 {
+        let sign = if i == 0 { 1.0 } else { -1.0 };
+        return ([sign, 0.0], [0.0, sign]);
+    }
+    let n = f64::from(valence);
+    let angle = |k: u32| 2.0 * PI * f64::from(k % valence) / n;
+    let a = 1.0 + angle(1).cos() + (PI / n).cos() * (2.0 * (9.0 + angle(1).cos())).sqrt();
+    let (s0, c0) = angle(i).sin_cos();
+    let (s1, c1) = angle(i + 1).sin_cos();
+    ([a * c0, a * s0], [c0 + c1, s0 + s1])
+}
+
+/// Weights of the tangent across a boundary of `face_count` faces (Biermann et al. 2000, appendix).
+#[derive(Clone, Copy, Debug)]
+pub struct BoundaryTangent {
+    face_count: u32,
+    scale: f64,
+}
+
+impl BoundaryTangent {
+    /// The mask of a boundary vertex with this many faces on it.
+    pub fn new(face_count: u32) -> Self {
+        let theta = PI / f64::from(face_count.max(2));
+        Self { face_count, scale: 1.0 / (f64::from(face_count) * (3.0 + theta.cos())) }
+    }
+
+    /// Weight of the vertex itself.
+    pub fn vertex(&self) -> f64 {
+        if self.face_count == 1 {
+            return -2.0;
+        }
+        let (sin, cos) = (PI / f64::from(self.face_count)).sin_cos();
+        4.0 * (cos + 1.0) / sin * (cos - 1.0) * self.scale
+    }
+
+    /// Weight of edge i of 0..=`face_count`; the first and the last are the boundary's.
+    pub fn edge(&self, i: u32) -> f64 {
+        if self.face_count == 1 {
+            return 1.0;
+        }
+        let theta = PI / f64::from(self.face_count);
+        if i == 0 || i == self.face_count {
+            let (sin, cos) = theta.sin_cos();
+            return -(cos + 1.0) / sin * (1.0 + 2.0 * cos) * self.scale;
+        }
+        4.0 * (f64::from(i) * theta).sin() * self.scale
+    }
+
+    /// Weight of the vertex opposite in face i, between the edges i and i + 1.
+    pub fn face(&self, i: u32) -> f64 {
+        if self.face_count == 1 {
+            return 0.0;
+        }
+        let theta = PI / f64::from(self.face_count);
+        ((f64::from(i) * theta).sin() + (f64::from(i + 1) * theta).sin()) * self.scale
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One refinement step around a smooth vertex of valence n: the rows of (v, e.., f..).
+    fn subdivision_matrix(n: usize) -> Vec<Vec<f64>> {
+        let mask = smooth_vertex(n as u32);
+        let size = 2 * n + 1;
+        let mut rows = vec![vec![0.0; size]; size];
+        rows[0][0] = mask.vertex;
+        for i in 0..n {
+            let (edge, face) = (1 + i, 1 + n + i);
+            let (next, previous) = ((i + 1) % n, (i + n - 1) % n);
+            rows[0][edge] += mask.edge;
+            rows[0][face] += mask.face;
+            rows[edge][0] += EDGE_END;
+            rows[edge][edge] += EDGE_END;
+            for far in [1 + next, 1 + previous, face, 1 + n + previous] {
+                rows[edge][far] += EDGE_FAR;
+            }
+            for corner in [0, edge, 1 + next, face] {
+                rows[face][corner] += 0.25;
+            }
+        }
+        rows
+    }
+
+    fn left_multiply(weights: &[f64], rows: &[Vec<f64>]) -> Vec<f64> {
+        (0..weights.len()).map(|j| weights.iter().zip(rows).map(|(w, row)| w * row[j]).sum()).collect()
+    }
+
+    #[test]
+    fn limit_mask_is_the_left_eigenvector_of_one() {
+        for n in [2_usize, 3, 4, 5, 7, 40, 400] {
+            let mask = smooth_limit(n as u32);
+            let mut weights = vec![mask.vertex];
+            weights.extend(vec![mask.edge; n]);
+            weights.extend(vec![mask.face; n]);
+            assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+            for (a, b) in weights.iter().zip(left_multiply(&weights, &subdivision_matrix(n))) {
+                assert!((a - b).abs() < 1e-12, "valence {n}: {a} became {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn tangent_masks_are_left_eigenvectors_of_the_subdominant_eigenvalue() {
+        for n in [3_usize, 4, 5, 7, 40, 400] {
+            let c = (2.0 * PI / n as f64).cos();
+            let eigenvalue = (c + 5.0 + ((c + 9.0) * (c + 1.0)).sqrt()) / 16.0;
+            for axis in 0..2 {
+                let mut weights = vec![0.0];
+                weights.extend((0..n).map(|i| smooth_tangents(n as u32, i as u32).0[axis]));
+                weights.extend((0..n).map(|i| smooth_tangents(n as u32, i as u32).1[axis]));
+                for (a, b) in weights.iter().zip(left_multiply(&weights, &subdivision_matrix(n))) {
+                    assert!((a * eigenvalue - b).abs() < 1e-12, "valence {n}: {a} became {b}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn regular_boundary_tangent_is_the_spline_derivative() {
+        let mask = BoundaryTangent::new(2);
+        let expected = [-4.0, -1.0, 4.0, -1.0, 1.0, 1.0].map(|w| w / 6.0);
+        let got = [mask.vertex(), mask.edge(0), mask.edge(1), mask.edge(2), mask.face(0), mask.face(1)];
+        for (a, b) in expected.iter().zip(got) {
+            assert!((a - b).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn boundary_tangent_weights_sum_to_zero() {
+        for faces in 1..=20 {
+            let mask = BoundaryTangent::new(faces);
+            let sum = mask.vertex()
+                + (0..=faces).map(|i| mask.edge(i)).sum::<f64>()
+                + (0..faces).map(|i| mask.face(i)).sum::<f64>();
+            assert!(sum.abs() < 1e-12, "{faces} faces: {sum}");
+        }
+    }
+}

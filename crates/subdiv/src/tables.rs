@@ -1,0 +1,195 @@
+//! What the GPU reads: stencils by level, limit rows, and the patches of all levels.
+//!
+//! Points of all levels live in one array, the cage's first. Everything here depends on connectivity alone and costs
+//! O(irregular faces x depth); nothing is composed down to the cage.
+
+use std::ops::Range;
+
+use crate::limit::{LimitTable, SharedLimitWeights};
+use crate::patch::{FillingQuad, PatchInfo, RegularPatch, control_points};
+use crate::refine::Refinement;
+use crate::stencil::{SharedWeights, StencilTable, has_large_faces};
+use crate::topology::{Level, NONE};
+
+/// The points of one level.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LevelPoints {
+    /// Places among the points of all levels.
+    pub points: Range<u32>,
+    /// The rows that make them, in dispatches that depend on each other: one, or two where n-gons of many sides have
+    /// their face points made first. Row r makes point r + (number of cage points). Empty for the cage.
+    pub dispatches: Vec<Range<u32>>,
+}
+
+/// How many patches of each kind a level has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PatchCounts {
+    /// Regular patches without a split neighbour.
+    pub regular: u32,
+    /// Regular patches beside a split face.
+    pub transition: u32,
+    /// Patch-filling quads.
+    pub filling: u32,
+}
+
+/// Tables of one mesh.
+#[derive(Clone, Debug, Default)]
+pub struct Tables {
+    /// Number of cage points.
+    pub cage_point_count: u32,
+    /// By level.
+    pub levels: Vec<LevelPoints>,
+    /// Rows of all levels from the first on.
+    pub stencils: StencilTable,
+    /// Limit points.
+    pub limits: LimitTable,
+    /// Bicubic patches, level by level.
+    pub patches: Vec<RegularPatch>,
+    /// Irregular leaves.
+    pub filling: Vec<FillingQuad>,
+    /// For each irregular leaf the limit points at the middles of its edges 0 to 3 and at its centre; empty unless the
+    /// refinement kept midpoints.
+    pub filling_midpoints: Vec<[u32; 5]>,
+    /// By level.
+    pub counts: Vec<PatchCounts>,
+    /// Level of the irregular leaves.
+    pub last_level: u32,
+}
+
+impl Tables {
+    /// Builds the tables of a refinement.
+    pub fn new(refinement: &Refinement) -> Self {
+        let cage_point_count = refinement.levels[0].tags.len() as u32;
+        let mut tables = Self {
+            cage_point_count,
+            levels: vec![LevelPoints { points: 0..cage_point_count, dispatches: Vec::new() }],
+            last_level: refinement.last_level,
+            ..Self::default()
+        };
+        tables.add_stencils(refinement);
+        for k in 0..=refinement.last_level {
+            tables.add_patches(refinement, k);
+        }
+        tables.add_filling(refinement);
+        tables
+    }
+
+    /// Number of points of all levels.
+    pub fn point_count(&self) -> u32 {
+        self.levels.last().map_or(0, |level| level.points.end)
+    }
+
+    /// Number of limit points.
+    pub fn limit_point_count(&self) -> u32 {
+        self.limits.rows.len() as u32
+    }
+
+    /// Number of patches of all kinds and levels.
+    pub fn total_counts(&self) -> PatchCounts {
+        self.counts.iter().fold(PatchCounts::default(), |sum, c| PatchCounts {
+            regular: sum.regular + c.regular,
+            transition: sum.transition + c.transition,
+            filling: sum.filling + c.filling,
+        })
+    }
+
+    fn add_stencils(&mut self, refinement: &Refinement) {
+        let mut cache = SharedWeights::default();
+        let rows: usize = refinement.splits.iter().map(|split| split.point_count()).sum();
+        self.stencils.rows.reserve_exact(rows);
+        self.stencils.indices.reserve(7 * rows);
+        for (parent, split) in refinement.levels.iter().zip(&refinement.splits) {
+            let (first_point, first_child) = (self.levels.last().map_or(0, |l| l.points.start), self.point_count());
+            let end = first_child + split.point_count() as u32;
+            self.stencils.append_split(parent, split, first_point, first_child, &mut cache);
+            let rows = first_child - self.cage_point_count..end - self.cage_point_count;
+            let first_face_row = rows.end - split.faces.len() as u32;
+            let dispatches = if has_large_faces(parent, split) {
+                vec![first_face_row..rows.end, rows.start..first_face_row]
+            } else {
+                vec![rows]
+            };
+            self.levels.push(LevelPoints { points: first_child..end, dispatches });
+        }
+    }
+
+    fn add_patches(&mut self, refinement: &Refinement, k: u32) {
+        let level = &refinement.levels[k as usize];
+        let irregular = refinement.irregular_flags(k);
+        let is_last = k == refinement.last_level;
+        let first_point = self.levels[k as usize].points.start;
+        let mut counts = PatchCounts::default();
+        for face in (0..level.drawn_count).filter(|&face| level.is_drawn(face) && !irregular[face as usize]) {
+            let (points, boundary) = control_points(level, face);
+            let beside = irregular_neighbours(level, face, &irregular);
+            let (transition, leaf) = if is_last { (0, beside) } else { (beside, 0) };
+            let location = level.locations[face as usize];
+            let info = PatchInfo { location, level: k as u8, boundary, transition, leaf };
+            counts.regular += u32::from(transition == 0);
+            counts.transition += u32::from(transition != 0);
+            self.patches.push(RegularPatch { points: points.map(|v| first_point + v), info });
+        }
+        if is_last {
+            counts.filling = refinement.irregular_faces[k as usize].len() as u32;
+        }
+        self.counts.push(counts);
+    }
+
+    fn add_filling(&mut self, refinement: &Refinement) {
+        let last = refinement.last_level as usize;
+        let leaves = &refinement.irregular_faces[last];
+        let level = &refinement.levels[last];
+        // With midpoints the limits are those of the leaves' children: their corners are the leaves' corners,
+        // the middles of their edges and their centres.
+        let limit_level = refinement.levels.len() - 1;
+        let mut limits = LimitPoints {
+            level: &refinement.levels[limit_level],
+            first_point: self.levels[limit_level].points.start,
+            table: &mut self.limits,
+            of_vertex: vec![NONE; refinement.levels[limit_level].tags.len()],
+            cache: SharedLimitWeights::default(),
+        };
+        for (i, &face) in (0..).zip(leaves) {
+            let info =
+                PatchInfo { location: level.locations[face as usize], level: last as u8, ..PatchInfo::default() };
+            let corners = if refinement.options.midpoints {
+                let child = |j: u32, corner: usize| limits.level.vertices(4 * i + j)[corner];
+                let middle = [child(0, 1), child(1, 2), child(2, 3), child(3, 0), child(0, 2)];
+                let corners = [child(0, 0), child(1, 1), child(2, 2), child(3, 3)];
+                self.filling_midpoints.push(middle.map(|v| limits.point(v)));
+                corners
+            } else {
+                std::array::from_fn(|corner| level.vertices(face)[corner])
+            };
+            self.filling.push(FillingQuad { corners: corners.map(|v| limits.point(v)), info });
+        }
+    }
+}
+
+/// Which of a face's edges have an irregular face on the other side, one bit each.
+fn irregular_neighbours(level: &Level, face: u32, irregular: &[bool]) -> u8 {
+    level
+        .half_edges(face)
+        .zip(0..)
+        .fold(0, |mask, (half_edge, i)| mask | u8::from(irregular[level.face(level.twin(half_edge)) as usize]) << i)
+}
+
+/// Numbers limit points as they are asked for.
+struct LimitPoints<'a> {
+    level: &'a Level,
+    first_point: u32,
+    table: &'a mut LimitTable,
+    of_vertex: Vec<u32>,
+    cache: SharedLimitWeights,
+}
+
+impl LimitPoints<'_> {
+    fn point(&mut self, vertex: u32) -> u32 {
+        let slot = &mut self.of_vertex[vertex as usize];
+        if *slot == NONE {
+            *slot = self.table.rows.len() as u32;
+            self.table.push_vertex(self.level, vertex, self.first_point, &mut self.cache);
+        }
+        *slot
+    }
+}
