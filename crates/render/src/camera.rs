@@ -1,0 +1,87 @@
+//! The camera of a frame, as matrices.
+
+use glam::{Mat4, Vec2, Vec3, Vec4};
+
+/// A perspective camera and the image it makes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameCamera {
+    /// World to camera space: right-handed, looking down -z, +y up.
+    pub world_to_camera: Mat4,
+    /// Camera space to clip space: y up (the backend's viewport flips it), depth 1 at the near plane and 0 at infinity.
+    pub projection: Mat4,
+    /// Width and height of the image in pixels.
+    pub size: [u32; 2],
+}
+
+impl FrameCamera {
+    /// World to clip space.
+    pub fn view_projection(&self) -> Mat4 {
+        self.projection * self.world_to_camera
+    }
+
+    /// The same camera with the image moved right and down by a fraction of a pixel, for one sample of several.
+    pub fn jittered(&self, pixels: Vec2) -> Self {
+        let size = Vec2::new(self.size[0] as f32, self.size[1] as f32);
+        let shift = Vec2::new(2.0, -2.0) * pixels / size;
+        Self { projection: Mat4::from_translation(shift.extend(0.0)) * self.projection, ..*self }
+    }
+
+    /// World-space directions: through the image's upper left corner, and their change per pixel to the right and down.
+    pub fn rays(&self) -> [Vec3; 3] {
+        let p = &self.projection;
+        // At camera depth 1: x_ndc = (p00 x - p20) and likewise y.
+        let through = |x: f32, y: f32| Vec3::new((x + p.z_axis.x) / p.x_axis.x, (y + p.z_axis.y) / p.y_axis.y, -1.0);
+        let to_world = self.world_to_camera.inverse();
+        let [width, height] = self.size.map(|s| s as f32);
+        let corner = through(-1.0, 1.0);
+        let dx = (through(1.0, 1.0) - corner) / width;
+        let dy = (through(-1.0, -1.0) - corner) / height;
+        [corner, dx, dy].map(|v| to_world.transform_vector3(v))
+    }
+
+    /// Diameter in pixels of a sphere as seen by the camera, by the depth of its centre; 0 when it lies behind the
+    /// camera, infinite when the camera may be inside. Unlike an edge's own length it does not vanish at silhouettes.
+    pub fn projected_diameter(&self, centre: Vec3, radius: f32) -> f32 {
+        let depth = -(self.world_to_camera * Vec4::from((centre, 1.0))).z;
+        if depth < -radius {
+            return 0.0;
+        }
+        if depth <= radius {
+            return f32::INFINITY;
+        }
+        radius * self.projection.y_axis.y.abs() * self.size[1] as f32 / depth
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera() -> FrameCamera {
+        let world_to_camera = Mat4::look_at_rh(Vec3::new(3.0, 2.0, 5.0), Vec3::new(0.5, 0.0, 0.0), Vec3::Y);
+        let projection = Mat4::perspective_infinite_reverse_rh(0.8, 1.5, 0.1);
+        FrameCamera { world_to_camera, projection, size: [300, 200] }
+    }
+
+    #[test]
+    fn a_ray_meets_the_pixel_that_its_points_project_to() {
+        let camera = camera().jittered(Vec2::new(0.3, -0.2));
+        let [corner, dx, dy] = camera.rays();
+        let eye = camera.world_to_camera.inverse().w_axis.truncate();
+        let point = eye + 7.0 * (corner + 120.5 * dx + 33.25 * dy);
+        let clip = camera.view_projection() * point.extend(1.0);
+        let pixel = (clip.truncate() / clip.w).truncate() * Vec2::new(0.5, -0.5) + 0.5;
+        assert!((pixel * Vec2::new(300.0, 200.0) - Vec2::new(120.5, 33.25)).length() < 1e-3);
+    }
+
+    #[test]
+    fn a_sphere_behind_the_camera_has_no_size_and_one_around_it_no_bound() {
+        let camera = camera();
+        let back = camera.world_to_camera.inverse();
+        assert_eq!(camera.projected_diameter(back.transform_point3(Vec3::new(0.0, 0.0, 5.0)), 1.0), 0.0);
+        assert_eq!(camera.projected_diameter(back.transform_point3(Vec3::new(0.0, 0.0, 0.5)), 1.0), f32::INFINITY);
+        let ahead = camera.projected_diameter(back.transform_point3(Vec3::new(0.0, 0.0, -10.0)), 1.0);
+        let expected = 2.0 / (0.4_f32.tan() * 2.0 * 10.0) * 200.0;
+        assert!((ahead - expected).abs() < 1e-2);
+    }
+}

@@ -1,0 +1,58 @@
+//! What can go wrong between a cage and a recorded frame.
+
+use thiserror::Error;
+
+/// Why a surface cannot be uploaded or drawn. One line each.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The cage cannot be refined.
+    #[error(transparent)]
+    Subdivision(#[from] planish_subdiv::Error),
+    /// The device failed.
+    #[error(transparent)]
+    Gpu(#[from] planish_gpu::Error),
+    /// A tess factor that is no number of segments.
+    #[error("tess factor {factor} is out of range: expected a number of at least 1")]
+    TessFactor {
+        /// The factor.
+        factor: f32,
+    },
+    /// A density that is no length.
+    #[error("edge length of {pixels} pixels is out of range: expected a number above 0")]
+    EdgePixels {
+        /// The length.
+        pixels: f32,
+    },
+    /// The camera may be inside a base edge's bounding sphere.
+    #[error("the camera is too close to the mesh for one tess factor for all of it: move it, or use --tess")]
+    CameraInMesh,
+    /// A patch would need more segments than the tessellator makes.
+    #[error("a patch needs tess factor {factor}, but at most {max} is possible: use a larger --edge-pixels or a smaller --tess")]
+    FactorTooLarge {
+        /// The factor.
+        factor: f32,
+        /// The spacing's largest.
+        max: f32,
+    },
+    /// The device cannot capture what the tessellation stages produce.
+    #[error("device {device} has no VK_EXT_transform_feedback, which dump needs")]
+    NoTransformFeedback {
+        /// Its name.
+        device: String,
+    },
+    /// The device cannot draw lines.
+    #[error("device {device} has no fillModeNonSolid, which the wire view needs")]
+    NoLines {
+        /// Its name.
+        device: String,
+    },
+    /// The tessellator made another number of triangles than its specification says.
+    #[error("the device tessellated {found} triangles where {expected} were expected")]
+    TriangleCount {
+        /// What the factors ask for.
+        expected: u64,
+        /// What was captured.
+        found: u64,
+    },
+}

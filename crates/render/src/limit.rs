@@ -1,0 +1,71 @@
+//! The limit stage: positions and normals on the limit surface at the corners of irregular leaves (FAS section 4.1).
+//! Shader: `glsl/limit.comp`.
+
+use planish_gpu::{ComputePipeline, Device, Encoder};
+use planish_shaders::LimitPoint;
+use planish_shaders::limit_comp::{PROGRAM, Push};
+use planish_subdiv::tables::Tables;
+
+use crate::error::Error;
+use crate::program::compute_pipeline;
+use crate::surface::Surface;
+use crate::upload::address;
+
+/// The stage's program.
+pub(crate) struct Limit(ComputePipeline);
+
+impl Limit {
+    pub(crate) fn new(device: &Device) -> Result<Self, Error> {
+        compute_pipeline(device, &PROGRAM).map(Self)
+    }
+
+    /// Records one dispatch over all limit points.
+    pub(crate) fn record(&self, encoder: &mut Encoder, surface: &Surface) {
+        let row_count = surface.tables.limit_point_count();
+        if row_count == 0 {
+            return;
+        }
+        let buffers = &surface.buffers;
+        let push = Push {
+            points: address(&buffers.points),
+            limits: address(&buffers.limits),
+            rows: address(&buffers.limit_rows),
+            indices: address(&buffers.limit_indices),
+            weights: address(&buffers.limit_weights),
+            row_count,
+            ..Push::default()
+        };
+        encoder.compute(&self.0, &push, row_count);
+    }
+}
+
+/// CPU twin: the limit points from the points of all levels, bit for bit as the shader makes them.
+pub fn limit(tables: &Tables, points: &[[f32; 3]]) -> Vec<LimitPoint> {
+    tables.limits.rows.iter().map(|row| {
+        let indices = &tables.limits.indices[row.first_index as usize..][..row.count as usize];
+        let weights = &tables.limits.weights[row.first_weight as usize..][..row.count as usize];
+        let origin = points[indices[0] as usize];
+        let mut sums = [[0.0_f32; 3]; 3];
+        for (&index, weight) in indices.iter().zip(weights).skip(1) {
+            let point = points[index as usize];
+            for (sum, w) in sums.iter_mut().zip(weight) {
+                for c in 0..3 {
+                    sum[c] += w * (point[c] - origin[c]);
+                }
+            }
+        }
+        let [position, a, b] = sums;
+        let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+        LimitPoint { position: std::array::from_fn(|c| origin[c] + position[c]), normal: unit(cross) }
+    }).collect()
+}
+
+fn unit(vector: [f32; 3]) -> [f32; 3] {
+    let largest = vector.iter().fold(0.0_f32, |m, c| m.max(c.abs()));
+    if largest == 0.0 {
+        return vector;
+    }
+    let scaled = vector.map(|c| c / largest);
+    let size = (scaled[0] * scaled[0] + scaled[1] * scaled[1] + scaled[2] * scaled[2]).sqrt();
+    scaled.map(|c| c / size)
+}

@@ -1,0 +1,151 @@
+//! The pipelines of the three passes: regular, transition and patch-filling quads; or of uniform refinement.
+
+use planish_gpu::{
+    DepthBias, DepthTest, Device, GraphicsPipeline, GraphicsPipelineDesc, PolygonMode, SpecConstant, Topology,
+};
+use planish_shaders as shaders;
+use planish_shaders::{DrawPush, ShaderModule};
+
+use crate::error::Error;
+use crate::lists::PatchKind;
+use crate::options::{Spacing, SurfaceMethod, View};
+use crate::program::stage;
+use crate::targets::{DEPTH_FORMAT, color_formats};
+
+/// What a pass's last stage before rasterization makes; the shaders' variants of the same names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Output {
+    /// The normal, for the beauty image alone.
+    Lean,
+    /// What all layers and debug views need.
+    Layers,
+    /// Captured by transform feedback.
+    Dump,
+}
+
+/// What the pipelines are for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PipelineOptions {
+    pub method: SurfaceMethod,
+    pub spacing: Spacing,
+    pub output: Output,
+    pub view: View,
+    pub cull_back: bool,
+    pub wire: bool,
+}
+
+/// The pipeline of each kind of patch that the method has.
+pub(crate) fn pipelines(
+    device: &Device,
+    options: &PipelineOptions,
+) -> Result<Vec<(PatchKind, GraphicsPipeline)>, Error> {
+    let kinds: &[PatchKind] = match options.method {
+        SurfaceMethod::Fas => &PatchKind::ALL,
+        SurfaceMethod::Uniform => &[PatchKind::Filling],
+    };
+    kinds.iter().map(|&kind| Ok((kind, pipeline(device, options, kind)?))).collect()
+}
+
+fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Result<GraphicsPipeline, Error> {
+    let bspline_constants = [
+        SpecConstant { id: shaders::bspline_patch_tesc::SPEC_SPACING, bits: options.spacing.constant() },
+        SpecConstant {
+            id: shaders::bspline_patch_lean_tese::SPEC_TRANSITION,
+            bits: u32::from(kind == PatchKind::Transition),
+        },
+    ];
+    let view_constant = [SpecConstant { id: shaders::surface_lean_frag::SPEC_VIEW, bits: options.view.constant() }];
+    let geometry = geometry_stages(options, kind);
+    let mut stages: Vec<_> = geometry
+        .iter()
+        .map(|module| {
+            let is_bspline = module.name.starts_with("bspline_patch");
+            let used = if !is_bspline {
+                &[][..]
+            } else if module.spec_constants.len() > 1 {
+                &bspline_constants[..]
+            } else {
+                &bspline_constants[..1]
+            };
+            stage(module, used)
+        })
+        .collect();
+    if options.wire {
+        stages.push(stage(&shaders::wire_frag::PROGRAM, &[]));
+    } else {
+        match options.output {
+            Output::Lean => stages.push(stage(&shaders::surface_lean_frag::PROGRAM, &view_constant)),
+            Output::Layers => stages.push(stage(&shaders::surface_layers_frag::PROGRAM, &view_constant)),
+            Output::Dump => {}
+        }
+    }
+    let is_dump = options.output == Output::Dump;
+    let formats = color_formats(options.output == Output::Layers);
+    Ok(GraphicsPipeline::new(
+        device,
+        &GraphicsPipelineDesc {
+            name: pass_name(options, kind),
+            stages: &stages,
+            push_size: size_of::<DrawPush>() as u32,
+            topology: match options.method {
+                SurfaceMethod::Fas => Topology::Patches { control_points: 1 },
+                SurfaceMethod::Uniform => Topology::Triangles,
+            },
+            color_formats: if is_dump { &[] } else { &formats },
+            depth_format: (!is_dump).then_some(DEPTH_FORMAT),
+            depth_test: if is_dump { DepthTest::Off } else { DepthTest::GreaterOrEqual },
+            depth_write: !is_dump,
+            // Depth grows towards the eye: lines win over the triangles that they bound.
+            depth_bias: options.wire.then_some(DepthBias { constant: 4.0, slope: 1.0 }),
+            polygon_mode: if options.wire { PolygonMode::Line } else { PolygonMode::Fill },
+            cull_back: options.cull_back,
+            rasterizer_discard: is_dump,
+        },
+    )?)
+}
+
+/// The stages before rasterization.
+fn geometry_stages(options: &PipelineOptions, kind: PatchKind) -> Vec<&'static ShaderModule> {
+    let pick = |lean, layers, dump| match options.output {
+        Output::Lean => lean,
+        Output::Layers => layers,
+        Output::Dump => dump,
+    };
+    if options.method == SurfaceMethod::Uniform {
+        return vec![pick(
+            &shaders::uniform_quad_lean_vert::PROGRAM,
+            &shaders::uniform_quad_layers_vert::PROGRAM,
+            &shaders::uniform_quad_dump_vert::PROGRAM,
+        )];
+    }
+    let list = &shaders::patch_list_vert::PROGRAM;
+    if kind != PatchKind::Filling {
+        let evaluation = pick(
+            &shaders::bspline_patch_lean_tese::PROGRAM,
+            &shaders::bspline_patch_layers_tese::PROGRAM,
+            &shaders::bspline_patch_dump_tese::PROGRAM,
+        );
+        return vec![list, &shaders::bspline_patch_tesc::PROGRAM, evaluation];
+    }
+    let control = if options.spacing == Spacing::FractionalEven {
+        &shaders::filling_quad_midpoints_tesc::PROGRAM
+    } else {
+        &shaders::filling_quad_corners_tesc::PROGRAM
+    };
+    let evaluation = pick(
+        &shaders::filling_quad_lean_tese::PROGRAM,
+        &shaders::filling_quad_layers_tese::PROGRAM,
+        &shaders::filling_quad_dump_tese::PROGRAM,
+    );
+    vec![list, control, evaluation]
+}
+
+fn pass_name(options: &PipelineOptions, kind: PatchKind) -> &'static str {
+    match (options.method, kind) {
+        (SurfaceMethod::Uniform, _) => "uniform quads",
+        (SurfaceMethod::Fas, PatchKind::Regular) => "regular patches",
+        (SurfaceMethod::Fas, PatchKind::Transition) => "transition patches",
+        (SurfaceMethod::Fas, PatchKind::Filling) => "filling quads",
+    }
+}
+

@@ -1,0 +1,32 @@
+//! Shader modules to pipelines.
+
+use planish_gpu::{ComputePipeline, ComputePipelineDesc, Device, SpecConstant, Stage, StageDesc};
+use planish_shaders::{ShaderModule, ShaderStage};
+
+use crate::error::Error;
+
+/// A compute pipeline without specialization constants.
+pub(crate) fn compute_pipeline(device: &Device, module: &ShaderModule) -> Result<ComputePipeline, Error> {
+    Ok(ComputePipeline::new(
+        device,
+        &ComputePipelineDesc {
+            name: module.name,
+            spirv: module.spirv,
+            push_size: module.push_size,
+            local_size: module.local_size.map_or(1, |size| size[0]),
+            spec: &[],
+        },
+    )?)
+}
+
+/// A stage of a graphics pipeline.
+pub(crate) fn stage<'a>(module: &ShaderModule, spec: &'a [SpecConstant]) -> StageDesc<'a> {
+    let stage = match module.stage {
+        ShaderStage::Vertex => Stage::Vertex,
+        ShaderStage::TessellationControl => Stage::TessellationControl,
+        ShaderStage::TessellationEvaluation => Stage::TessellationEvaluation,
+        ShaderStage::Fragment => Stage::Fragment,
+        ShaderStage::Compute => unreachable!("{}: a compute shader is no stage of a draw", module.name),
+    };
+    StageDesc { stage, spirv: module.spirv, spec }
+}

@@ -1,0 +1,262 @@
+//! A cage on the GPU: its tables, and the buffers that its frames fill.
+
+use std::time::Instant;
+
+use planish_gpu::{Buffer, Device, Encoder};
+use planish_subdiv::ControlMesh;
+use planish_subdiv::patch::PatchInfo;
+use planish_subdiv::refine::{RefineOptions, Refinement};
+use planish_subdiv::tables::Tables;
+
+use crate::error::Error;
+use crate::limit::Limit;
+use crate::lists::Lists;
+use crate::options::{Spacing, SurfaceMethod};
+use crate::subdivide::Subdivide;
+use crate::upload::{array, mapped, table};
+
+/// What to make of a cage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SurfaceDesc {
+    /// Surface method.
+    pub method: SurfaceMethod,
+    /// Spacing: fractional-even needs the limits of edges' middles.
+    pub spacing: Spacing,
+    /// Level that irregularities are isolated to ([`crate::density::isolation_level`]).
+    pub level: u32,
+}
+
+/// Times of the work that is done once a topology, in milliseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PreprocessTimes {
+    /// Refinement.
+    pub topology: f64,
+    /// Stencils, limit rows and patches.
+    pub tables: f64,
+    /// Buffers made and filled.
+    pub upload: f64,
+}
+
+/// Bytes of GPU memory.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MemoryBytes {
+    /// What depends on connectivity alone.
+    pub tables: u64,
+    /// Points of all levels and limit points.
+    pub points: u64,
+    /// Render lists and indirect draws.
+    pub lists: u64,
+}
+
+/// The tables of a cage, and how long they took.
+#[derive(Clone, Debug)]
+pub struct Preprocessed {
+    /// The tables.
+    pub tables: Tables,
+    /// Times; `upload` is 0.
+    pub times: PreprocessTimes,
+}
+
+/// Refines a cage and builds its tables, on one thread of the CPU.
+pub fn preprocess(mesh: &ControlMesh, desc: &SurfaceDesc) -> Result<Preprocessed, Error> {
+    let start = Instant::now();
+    let options = RefineOptions {
+        max_level: desc.level,
+        uniform: desc.method == SurfaceMethod::Uniform,
+        midpoints: desc.method != SurfaceMethod::Uniform && desc.spacing == Spacing::FractionalEven,
+    };
+    let refinement = Refinement::new(mesh, options)?;
+    let topology = milliseconds(start);
+    let start = Instant::now();
+    let tables = Tables::new(&refinement);
+    let times = PreprocessTimes { topology, tables: milliseconds(start), upload: 0.0 };
+    Ok(Preprocessed { tables, times })
+}
+
+pub(crate) struct Buffers {
+    pub cage: Buffer,
+    pub points: Buffer,
+    pub rows: Buffer,
+    pub indices: Buffer,
+    pub weights: Buffer,
+    pub limits: Buffer,
+    pub limit_rows: Buffer,
+    pub limit_indices: Buffer,
+    pub limit_weights: Buffer,
+    pub patches: Buffer,
+    pub quads: Buffer,
+    pub midpoints: Buffer,
+    pub list: Buffer,
+    pub draws: Buffer,
+}
+
+/// A cage on the GPU. Everything is kept alive by the surface: it must outlive the frames recorded with it.
+pub struct Surface {
+    pub(crate) desc: SurfaceDesc,
+    pub(crate) tables: Tables,
+    pub(crate) lists: Lists,
+    pub(crate) buffers: Buffers,
+    times: PreprocessTimes,
+    memory: MemoryBytes,
+}
+
+impl Surface {
+    /// Uploads what [`preprocess`] made, and the cage's positions.
+    pub fn new(device: &Device, mesh: &ControlMesh, desc: SurfaceDesc, made: Preprocessed) -> Result<Self, Error> {
+        let start = Instant::now();
+        let Preprocessed { tables, mut times } = made;
+        let lists = Lists::new(&tables);
+        let stencils = &tables.stencils;
+        let limits = &tables.limits;
+        let buffers = Buffers {
+            cage: mapped::<planish_shaders::Points>(device, "cage", tables.cage_point_count)?,
+            points: array::<planish_shaders::Points>(device, "points", tables.point_count())?,
+            rows: table(device, "stencil rows", &rows(&stencils.rows))?,
+            indices: table(device, "stencil indices", &stencils.indices)?,
+            weights: table(device, "stencil weights", &stencils.weights)?,
+            limits: array::<planish_shaders::LimitPoint>(device, "limit points", tables.limit_point_count())?,
+            limit_rows: table(device, "limit rows", &rows(&limits.rows))?,
+            limit_indices: table(device, "limit indices", &limits.indices)?,
+            limit_weights: table(device, "limit weights", &limits.weights)?,
+            patches: table(device, "patches", &patches(&tables))?,
+            quads: table(device, "filling quads", &quads(&tables))?,
+            midpoints: table(device, "filling midpoints", &tables.filling_midpoints)?,
+            list: table(device, "render lists", &lists.entries)?,
+            draws: table(device, "draws", &lists.draws(desc.method, device.is_software()))?,
+        };
+        times.upload = milliseconds(start);
+        let memory = buffers.memory();
+        let surface = Self { desc, tables, lists, buffers, times, memory };
+        surface.set_cage(&mesh.positions)?;
+        Ok(surface)
+    }
+
+    /// Sets the positions of the cage's vertices, for all frames submitted from now on.
+    ///
+    /// # Panics
+    /// If there are more positions than cage vertices.
+    pub fn set_cage(&self, positions: &[[f32; 3]]) -> Result<(), Error> {
+        if !positions.is_empty() {
+            self.buffers.cage.write(0, positions)?;
+        }
+        Ok(())
+    }
+
+    /// What the surface was made as.
+    pub fn desc(&self) -> &SurfaceDesc {
+        &self.desc
+    }
+
+    /// The tables.
+    pub fn tables(&self) -> &Tables {
+        &self.tables
+    }
+
+    /// The render lists.
+    pub fn lists(&self) -> &Lists {
+        &self.lists
+    }
+
+    /// Times of the work done once.
+    pub fn times(&self) -> PreprocessTimes {
+        self.times
+    }
+
+    /// Bytes of GPU memory in use.
+    pub fn memory(&self) -> MemoryBytes {
+        self.memory
+    }
+
+    /// The points of all levels as the last frame left them; waits for the device. For tests.
+    pub fn download_points(&self, device: &Device) -> Result<Vec<[f32; 3]>, Error> {
+        Ok(device.download(&self.buffers.points, 0, self.tables.point_count() as usize)?)
+    }
+
+    /// The limit points as the last frame left them; waits for the device. For tests.
+    pub fn download_limits(&self, device: &Device) -> Result<Vec<planish_shaders::LimitPoint>, Error> {
+        Ok(device.download(&self.buffers.limits, 0, self.tables.limit_point_count() as usize)?)
+    }
+}
+
+/// The stages that make a frame's points, before anything is drawn.
+pub struct PointStages {
+    subdivide: Subdivide,
+    limit: Limit,
+}
+
+impl PointStages {
+    /// Makes the pipelines.
+    pub fn new(device: &Device) -> Result<Self, Error> {
+        Ok(Self { subdivide: Subdivide::new(device)?, limit: Limit::new(device)? })
+    }
+
+    /// Records: cage to points, subdivide, limit. Takes the times `start`, `subdivide` and `limit`.
+    pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
+        surface.buffers.keep(encoder);
+        encoder.timestamp("start");
+        encoder.copy_buffer(&surface.buffers.cage, &surface.buffers.points);
+        self.subdivide.record(encoder, surface);
+        encoder.timestamp("subdivide");
+        self.limit.record(encoder, surface);
+        encoder.timestamp("limit");
+    }
+}
+
+impl Buffers {
+    fn all(&self) -> [&Buffer; 14] {
+        [
+            &self.cage,
+            &self.points,
+            &self.rows,
+            &self.indices,
+            &self.weights,
+            &self.limits,
+            &self.limit_rows,
+            &self.limit_indices,
+            &self.limit_weights,
+            &self.patches,
+            &self.quads,
+            &self.midpoints,
+            &self.list,
+            &self.draws,
+        ]
+    }
+
+    fn keep(&self, encoder: &mut Encoder) {
+        self.all().into_iter().for_each(|buffer| encoder.keep(buffer));
+    }
+
+    fn memory(&self) -> MemoryBytes {
+        let points = self.cage.size() + self.points.size() + self.limits.size();
+        let lists = self.list.size() + self.draws.size();
+        let all: u64 = self.all().iter().map(|buffer| buffer.size()).sum();
+        MemoryBytes { tables: all - points - lists, points, lists }
+    }
+}
+
+fn rows(rows: &[planish_subdiv::stencil::StencilRow]) -> Vec<planish_shaders::StencilRow> {
+    rows.iter()
+        .map(|row| planish_shaders::StencilRow {
+            first_index: row.first_index,
+            first_weight: row.first_weight,
+            count: row.count,
+        })
+        .collect()
+}
+
+fn info(info: &PatchInfo) -> planish_shaders::PatchInfo {
+    let [ptex_face, corner, flags] = info.pack();
+    planish_shaders::PatchInfo { ptex_face, corner, flags }
+}
+
+fn patches(tables: &Tables) -> Vec<planish_shaders::RegularPatch> {
+    tables.patches.iter().map(|p| planish_shaders::RegularPatch { points: p.points, info: info(&p.info) }).collect()
+}
+
+fn quads(tables: &Tables) -> Vec<planish_shaders::FillingQuad> {
+    tables.filling.iter().map(|q| planish_shaders::FillingQuad { corners: q.corners, info: info(&q.info) }).collect()
+}
+
+fn milliseconds(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}

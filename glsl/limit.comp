@@ -1,0 +1,49 @@
+#version 460
+// One thread makes one limit point: position and normal by limit masks (FAS section 4.1, Halstead et al. 1993).
+#extension GL_GOOGLE_include_directive : require
+#include "shared/tables.glsl"
+layout(local_size_x = 64) in;
+#include "shared/dispatch.glsl"
+
+layout(push_constant, scalar) uniform LimitPush {
+    Points points;
+    LimitPoints limits;
+    StencilRows rows;
+    Indices indices;
+    LimitWeights weights; // of the position and of two tangents
+    uint row_count;
+} push;
+
+void main()
+{
+    uint thread = thread_index();
+    if (thread >= push.row_count) {
+        return;
+    }
+    StencilRow row = push.rows.v[thread];
+    precise vec3 origin = push.points.v[push.indices.v[row.first_index]];
+    precise vec3 position = vec3(0.0);
+    precise vec3 tangent0 = vec3(0.0);
+    precise vec3 tangent1 = vec3(0.0);
+    for (uint i = 1; i < row.count; ++i) {
+        precise vec3 offset = push.points.v[push.indices.v[row.first_index + i]] - origin;
+        vec3 weight = push.weights.v[row.first_weight + i];
+        position = position + weight.x * offset;
+        tangent0 = tangent0 + weight.y * offset;
+        tangent1 = tangent1 + weight.z * offset;
+    }
+    precise vec3 normal = vec3(tangent0.y * tangent1.z - tangent0.z * tangent1.y,
+                               tangent0.z * tangent1.x - tangent0.x * tangent1.z,
+                               tangent0.x * tangent1.y - tangent0.y * tangent1.x);
+    // Scaled before it is squared: the squares of tiny or huge cages leave the range of f32.
+    precise float largest = max(max(abs(normal.x), abs(normal.y)), abs(normal.z));
+    if (largest > 0.0) {
+        normal = normal / largest;
+        precise float size = sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
+        normal = normal / size;
+    }
+    LimitPoint result;
+    result.position = origin + position;
+    result.normal = normal;
+    push.limits.v[thread] = result;
+}

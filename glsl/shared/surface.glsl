@@ -1,0 +1,44 @@
+// What an evaluated point of the surface becomes: outputs for the beauty image, for all layers, or for a dump.
+//
+// LEAN draws the beauty image from the normal alone; every interpolated value costs triangle set-up. LAYERS carries what
+// the other layers and the debug views need. DUMP is captured by transform feedback.
+#ifndef PLANISH_SURFACE
+#define PLANISH_SURFACE
+#include "frame.glsl"
+
+const uint KIND_REGULAR = 0;
+const uint KIND_TRANSITION = 1;
+const uint KIND_FILLING = 2;
+
+#if defined(DUMP)
+layout(xfb_buffer = 0, xfb_stride = 40) out;
+layout(location = 0, xfb_buffer = 0, xfb_offset = 0) out vec3 out_position;
+layout(location = 1, xfb_buffer = 0, xfb_offset = 12) out vec3 out_normal;
+layout(location = 2, xfb_buffer = 0, xfb_offset = 24) out vec2 out_uv;
+layout(location = 3, xfb_buffer = 0, xfb_offset = 32) out uvec2 out_face; // Ptex face; level and kind << 8
+#else
+layout(location = 0) out vec3 out_normal;
+#if defined(LAYERS)
+layout(location = 1) out vec3 out_position;
+layout(location = 2) out vec2 out_uv;
+layout(location = 3) out flat uvec4 out_ids; // Ptex face, patch, level, kind
+layout(location = 4) out flat float out_factor;
+#endif
+#endif
+
+void put_surface_point(vec3 position, vec3 normal, vec2 uv, PatchInfo info, uint patch_id, uint kind)
+{
+    out_normal = normal;
+    gl_Position = push.frame.v.view_projection * vec4(position, 1.0);
+#if defined(DUMP)
+    out_position = position;
+    out_uv = ptex_uv(info, uv);
+    out_face = uvec2(info.ptex_face, patch_level(info) | kind << 8);
+#elif defined(LAYERS)
+    out_position = position;
+    out_uv = ptex_uv(info, uv);
+    out_ids = uvec4(info.ptex_face, patch_id, patch_level(info), kind);
+    out_factor = push.frame.v.factors[patch_level(info)];
+#endif
+}
+#endif

@@ -1,0 +1,37 @@
+#version 460
+// variants: lean=LEAN layers=LAYERS
+// Shades the surface: a key, a fill and a rim light over a small analytic sky; or a debug view; and the layers.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/frame.glsl"
+#include "shared/shading.glsl"
+
+layout(constant_id = 0) const uint VIEW = VIEW_SHADED;
+layout(location = 0) in vec3 in_normal;
+layout(location = 0) out vec4 out_color;
+#if defined(LAYERS)
+layout(location = 1) in vec3 in_position;
+layout(location = 2) in vec2 in_uv;
+layout(location = 3) in flat uvec4 in_ids;
+layout(location = 4) in flat float in_factor;
+layout(location = 1) out vec4 out_normal_depth;    // N, Z
+layout(location = 2) out vec4 out_position_factor; // P, tess factor
+layout(location = 3) out uvec4 out_ids;            // face, patch | level << 28, u, v as bits
+#endif
+
+void main()
+{
+    vec3 direction = push.frame.v.ray_corner + gl_FragCoord.x * push.frame.v.ray_dx + gl_FragCoord.y * push.frame.v.ray_dy;
+    vec3 to_eye = -normalize(direction);
+    float size = length(in_normal);
+    vec3 normal = size > 0.0 ? in_normal / size : to_eye;
+    vec3 facing = gl_FrontFacing ? normal : -normal;
+#if defined(LAYERS)
+    out_color = vec4(view_color(VIEW, facing, to_eye, in_uv, in_ids, in_factor), 1.0);
+    float depth = -(push.frame.v.world_to_camera * vec4(in_position, 1.0)).z;
+    out_normal_depth = vec4(normal, depth);
+    out_position_factor = vec4(in_position, in_factor);
+    out_ids = uvec4(in_ids.x, in_ids.y | in_ids.z << 28, floatBitsToUint(in_uv));
+#else
+    out_color = vec4(shade(facing, to_eye), 1.0);
+#endif
+}

@@ -1,0 +1,16 @@
+#version 460
+// variants: lean=LEAN layers=LAYERS dump=DUMP
+// Global refinement drawn as triangles (FAS section 8.1): two of each quad of the last level, at limit points.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/surface.glsl"
+
+const uint CORNERS[6] = uint[6](0, 1, 2, 0, 2, 3);
+
+void main()
+{
+    uint quad = push.list.v[gl_VertexIndex / 6];
+    uint corner = CORNERS[gl_VertexIndex % 6];
+    LimitPoint limit = push.limits.v[push.quads.v[quad].corners[corner]];
+    vec2 uv = vec2(corner == 1 || corner == 2, corner >= 2);
+    put_surface_point(limit.position, limit.normal, uv, push.quads.v[quad].info, push.first_patch_id + quad, KIND_FILLING);
+}
