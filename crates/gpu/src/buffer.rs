@@ -5,6 +5,7 @@ use crate::memory::{Location, MemoryBlock, MemoryRequest};
 use crate::{Device, Error, Feature, Result};
 use ash::vk;
 use bytemuck::Pod;
+use std::ptr::NonNull;
 use std::sync::Arc;
 
 /// Who accesses a buffer besides the GPU.
@@ -139,7 +140,17 @@ impl Buffer {
         if self.inner.kind != BufferKind::Upload {
             return Err(self.not_mapped("upload", "written"));
         }
-        self.inner.write_mapped(offset, bytemuck::cast_slice(values))
+        let bytes: &[u8] = bytemuck::cast_slice(values);
+        self.inner.check(offset, bytes.len() as u64)?;
+        let Some(mapped) = self.inner.mapped() else { return Err(self.not_mapped("upload", "written")) };
+        let _idle = self.inner.device.idle_queue();
+        // SAFETY: the range lies in the buffer, whose block is mapped, coherent and at least as large; the lock keeps
+        // the GPU and other threads from touching it, and a caller's slice is never inside it.
+        unsafe {
+            let target = mapped.as_ptr().add(offset as usize);
+            std::ptr::copy_nonoverlapping(bytes.as_ptr(), target, bytes.len());
+        }
+        Ok(())
     }
 
     /// Reads `count` values from byte `offset` of a [`BufferKind::Readback`] buffer, once the GPU is idle.
@@ -152,8 +163,7 @@ impl Buffer {
         }
         let bytes = (count as u64).saturating_mul(size_of::<T>() as u64);
         self.inner.check(offset, bytes)?;
-        let Some(block) = &self.inner.block else { return Err(self.not_mapped("read-back", "read")) };
-        let Some(mapped) = block.mapped else { return Err(self.not_mapped("read-back", "read")) };
+        let Some(mapped) = self.inner.mapped() else { return Err(self.not_mapped("read-back", "read")) };
         let mut values = vec![T::zeroed(); count];
         let target: &mut [u8] = bytemuck::cast_slice_mut(&mut values);
         let _idle = self.inner.device.idle_queue();
@@ -179,24 +189,8 @@ impl Buffer {
 }
 
 impl BufferInner {
-    /// Whether the CPU can write it in place, whatever its kind: true of all memory of a software device.
-    pub(crate) fn is_mapped(&self) -> bool {
-        self.block.as_ref().is_some_and(|block| block.mapped.is_some())
-    }
-
-    pub(crate) fn write_mapped(&self, offset: u64, bytes: &[u8]) -> Result<()> {
-        self.check(offset, bytes.len() as u64)?;
-        let Some(mapped) = self.block.as_ref().and_then(|block| block.mapped) else {
-            return Err(Error::NotMapped { name: self.name.clone(), expected: "upload", accessed: "written" });
-        };
-        let _idle = self.device.idle_queue();
-        // SAFETY: the range lies in the buffer, whose block is mapped, coherent and at least as large; the lock keeps
-        // the GPU and other threads from touching it, and a caller's slice is never inside it.
-        unsafe {
-            let target = mapped.as_ptr().add(offset as usize);
-            std::ptr::copy_nonoverlapping(bytes.as_ptr(), target, bytes.len());
-        }
-        Ok(())
+    fn mapped(&self) -> Option<NonNull<u8>> {
+        self.block.as_ref().and_then(|block| block.mapped)
     }
 
     fn check(&self, offset: u64, bytes: u64) -> Result<()> {

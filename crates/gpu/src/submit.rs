@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 const TIMEOUT: Duration = Duration::from_secs(600);
 
 /// Bytes that are staged at once by [`Device::upload`].
-const UPLOAD_CHUNK: u64 = 64 << 20;
+const UPLOAD_CHUNK: u64 = 16 << 20;
 
 /// What one submission measured.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -92,10 +92,6 @@ impl Device {
         let bytes: &[u8] = bytemuck::cast_slice(values);
         let size = bytes.len() as u64;
         let buffer = Buffer::new(self, &BufferDesc { name, kind: BufferKind::Device, size })?;
-        if buffer.inner.is_mapped() {
-            buffer.inner.write_mapped(0, bytes)?;
-            return Ok(buffer);
-        }
         let staging_size = size.min(UPLOAD_CHUNK);
         let staging = Buffer::new(self, &BufferDesc { name, kind: BufferKind::Upload, size: staging_size })?;
         let mut to_offset = 0;

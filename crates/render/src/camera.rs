@@ -55,11 +55,13 @@ impl FrameCamera {
 
 #[cfg(test)]
 mod tests {
+    use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_at_mat4};
+
     use super::*;
 
     fn camera() -> FrameCamera {
-        let world_to_camera = Mat4::look_at_rh(Vec3::new(3.0, 2.0, 5.0), Vec3::new(0.5, 0.0, 0.0), Vec3::Y);
-        let projection = Mat4::perspective_infinite_reverse_rh(0.8, 1.5, 0.1);
+        let world_to_camera = look_at_mat4(Vec3::new(3.0, 2.0, 5.0), Vec3::new(0.5, 0.0, 0.0), Vec3::Y);
+        let projection = perspective_infinite_reverse(0.8, 1.5, 0.1);
         FrameCamera { world_to_camera, projection, size: [300, 200] }
     }
 

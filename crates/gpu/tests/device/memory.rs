@@ -43,6 +43,16 @@ fn mapped_access_outside_of_a_buffer_or_of_another_kind_is_an_error() {
 }
 
 #[test]
+fn a_large_upload_arrives_in_pieces_and_whole() {
+    with_device(|device| {
+        // 20 MiB: more than is staged at once.
+        let values: Vec<u32> = (0..5 << 20).collect();
+        let buffer = device.upload("large", &values).unwrap();
+        assert!(device.download::<u32>(&buffer, 0, values.len()).unwrap() == values);
+    });
+}
+
+#[test]
 fn an_empty_buffer_has_an_address() {
     with_device(|device| {
         let empty = device.upload::<u32>("empty", &[]).unwrap();
