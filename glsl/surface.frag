@@ -21,9 +21,9 @@ layout(location = 3) out uvec4 out_ids;            // face, patch | level << 28,
 void main()
 {
     vec3 direction = push.frame.v.ray_corner + gl_FragCoord.x * push.frame.v.ray_dx + gl_FragCoord.y * push.frame.v.ray_dy;
-    vec3 to_eye = -normalize(direction);
-    float size = length(in_normal);
-    vec3 normal = size > 0.0 ? in_normal / size : to_eye;
+    vec3 to_eye = direction * -inversesqrt(dot(direction, direction));
+    // A point without a tangent plane has the normal 0; the bound keeps its pixels finite.
+    vec3 normal = in_normal * inversesqrt(max(dot(in_normal, in_normal), 1e-20));
     vec3 facing = gl_FrontFacing ? normal : -normal;
 #if defined(LAYERS)
     out_color = vec4(view_color(VIEW, facing, to_eye, in_uv, in_ids, in_factor), 1.0);

@@ -54,10 +54,7 @@ impl DrawPasses {
             wire: false,
         };
         let wire = PipelineOptions { wire: true, ..fill };
-        Ok(Self {
-            fill: pipelines(device, &fill)?,
-            wire: if is_wire { pipelines(device, &wire)? } else { Vec::new() },
-        })
+        Ok(Self { fill: pipelines(device, &fill)?, wire: if is_wire { pipelines(device, &wire)? } else { Vec::new() } })
     }
 
     /// Records the passes, drawn indirectly from the surface's lists; the points must have been made. Takes the time
@@ -83,8 +80,10 @@ fn record_lists(
     for (kind, pipeline) in pipelines {
         let push = frame.push(surface, surface.lists.ranges[*kind as usize].start);
         let stride = size_of::<DrawArguments>() as u32;
-        let offset = *kind as u64 * u64::from(stride);
-        let draw = Draw::Indirect { arguments: &surface.buffers.draws, offset, draw_count: 1, stride };
+        let draws = surface.draw_ranges[*kind as usize].clone();
+        let offset = u64::from(draws.start) * u64::from(stride);
+        let draw_count = draws.len() as u32;
+        let draw = Draw::Indirect { arguments: &surface.buffers.draws, offset, draw_count, stride };
         encoder.draw(pipeline, &push, draw);
     }
 }

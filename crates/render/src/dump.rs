@@ -3,7 +3,10 @@
 //! Lists are drawn in parts whose triangles fit a buffer of fixed size, so a dump of any size needs no more memory.
 
 use bytemuck::{Pod, Zeroable};
-use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, Draw, DrawArguments, Encoder, Feature, Feedback, FeedbackList, GraphicsPipeline};
+use planish_gpu::{
+    Buffer, BufferDesc, BufferKind, Device, Draw, DrawArguments, Encoder, Feature, Feedback, FeedbackList,
+    GraphicsPipeline,
+};
 
 use crate::density::FACTOR_COUNT;
 use crate::error::Error;
@@ -52,8 +55,14 @@ impl DumpPasses {
         if !device.has(Feature::TransformFeedback) {
             return Err(Error::NoTransformFeedback { device: device.name().to_owned() });
         }
-        let options =
-            PipelineOptions { method, spacing, output: Output::Dump, view: View::Shaded, cull_back: false, wire: false };
+        let options = PipelineOptions {
+            method,
+            spacing,
+            output: Output::Dump,
+            view: View::Shaded,
+            cull_back: false,
+            wire: false,
+        };
         let buffer = |name, kind, size| Buffer::new(device, &BufferDesc { name, kind, size });
         Ok(Self {
             pipelines: pipelines(device, &options)?,
@@ -90,7 +99,14 @@ impl DumpPasses {
     }
 
     /// How many list entries from `first` on fit the buffer, and their triangles.
-    fn part(&self, surface: &Surface, kind: PatchKind, first: u32, end: u32, factors: &[f32; FACTOR_COUNT]) -> (u32, u64) {
+    fn part(
+        &self,
+        surface: &Surface,
+        kind: PatchKind,
+        first: u32,
+        end: u32,
+        factors: &[f32; FACTOR_COUNT],
+    ) -> (u32, u64) {
         let (mut count, mut triangles) = (0, 0);
         for &entry in &surface.lists.entries[first as usize..end as usize] {
             let more = match kind {

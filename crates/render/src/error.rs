@@ -28,7 +28,9 @@ pub enum Error {
     #[error("the camera is too close to the mesh for one tess factor for all of it: move it, or use --tess")]
     CameraInMesh,
     /// A patch would need more segments than the tessellator makes.
-    #[error("a patch needs tess factor {factor}, but at most {max} is possible: use a larger --edge-pixels or a smaller --tess")]
+    #[error(
+        "a patch needs tess factor {factor}, but at most {max} is possible: use a larger --edge-pixels or a smaller --tess"
+    )]
     FactorTooLarge {
         /// The factor.
         factor: f32,

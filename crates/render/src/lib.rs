@@ -27,7 +27,7 @@ pub use draw::{DrawOptions, DrawPasses};
 pub use dump::{CapturedVertex, DumpPasses};
 pub use error::Error;
 pub use frame::FrameConstants;
-pub use lists::{Lists, PatchKind, draw_arguments};
+pub use lists::{DrawShape, Lists, PatchKind, draw_arguments};
 pub use options::{Density, Spacing, SurfaceMethod, View};
 pub use surface::{MemoryBytes, PointStages, PreprocessTimes, Preprocessed, Surface, SurfaceDesc, preprocess};
 pub use targets::{NO_SURFACE, Targets};

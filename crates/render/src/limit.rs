@@ -41,23 +41,28 @@ impl Limit {
 
 /// CPU twin: the limit points from the points of all levels, bit for bit as the shader makes them.
 pub fn limit(tables: &Tables, points: &[[f32; 3]]) -> Vec<LimitPoint> {
-    tables.limits.rows.iter().map(|row| {
-        let indices = &tables.limits.indices[row.first_index as usize..][..row.count as usize];
-        let weights = &tables.limits.weights[row.first_weight as usize..][..row.count as usize];
-        let origin = points[indices[0] as usize];
-        let mut sums = [[0.0_f32; 3]; 3];
-        for (&index, weight) in indices.iter().zip(weights).skip(1) {
-            let point = points[index as usize];
-            for (sum, w) in sums.iter_mut().zip(weight) {
-                for c in 0..3 {
-                    sum[c] += w * (point[c] - origin[c]);
+    tables
+        .limits
+        .rows
+        .iter()
+        .map(|row| {
+            let indices = &tables.limits.indices[row.first_index as usize..][..row.count as usize];
+            let weights = &tables.limits.weights[row.first_weight as usize..][..row.count as usize];
+            let origin = points[indices[0] as usize];
+            let mut sums = [[0.0_f32; 3]; 3];
+            for (&index, weight) in indices.iter().zip(weights).skip(1) {
+                let point = points[index as usize];
+                for (sum, w) in sums.iter_mut().zip(weight) {
+                    for c in 0..3 {
+                        sum[c] += w * (point[c] - origin[c]);
+                    }
                 }
             }
-        }
-        let [position, a, b] = sums;
-        let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-        LimitPoint { position: std::array::from_fn(|c| origin[c] + position[c]), normal: unit(cross) }
-    }).collect()
+            let [position, a, b] = sums;
+            let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+            LimitPoint { position: std::array::from_fn(|c| origin[c] + position[c]), normal: unit(cross) }
+        })
+        .collect()
 }
 
 fn unit(vector: [f32; 3]) -> [f32; 3] {

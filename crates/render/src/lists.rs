@@ -1,15 +1,18 @@
 //! Render lists: which patches are drawn, and the indirect draws that draw them.
 //!
-//! In static FAS they depend on the tables alone. A list is one indirect draw whose shape depends on the device: hardware
-//! gets `{ vertices: N, instances: 1 }`; a software driver, whose tessellation costs the square of what one instance
-//! generates, `{ 1, N }`. The shaders add both indices and do not know.
+//! In static FAS they depend on the tables and the factors alone. A list's draws have a shape that depends on the device:
+//! hardware gets one `{ vertices: N, instances: 1 }`; a software driver, whose tessellation costs the square of what one
+//! instance generates and a fixed price besides, gets batches of about [`BATCH_VERTICES`] generated vertices. The shaders
+//! add the vertex and the instance index and do not know.
 
 use std::ops::Range;
 
 use planish_gpu::DrawArguments;
 use planish_subdiv::tables::Tables;
 
-use crate::options::SurfaceMethod;
+use crate::density::FACTOR_COUNT;
+use crate::options::{Spacing, SurfaceMethod};
+use crate::tessellation::segment_count;
 
 /// The kinds of patches, in the order of their lists and draws; also the `kind` of a dump.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,9 +55,77 @@ impl Lists {
         lists
     }
 
-    /// The indirect draw of each list.
-    pub fn draws(&self, method: SurfaceMethod, is_software: bool) -> [DrawArguments; 3] {
-        self.ranges.clone().map(|range| draw_arguments(0, range.len() as u32, method, is_software))
+    /// The indirect draws of all lists, and each list's part of them.
+    pub fn draws(&self, tables: &Tables, shape: &DrawShape<'_>) -> (Vec<DrawArguments>, [Range<u32>; 3]) {
+        let mut draws = Vec::new();
+        let mut parts: [Range<u32>; 3] = Default::default();
+        for kind in PatchKind::ALL {
+            let first = draws.len() as u32;
+            let range = self.ranges[kind as usize].clone();
+            if !shape.is_software || shape.method == SurfaceMethod::Uniform {
+                draws.push(draw_arguments(0, range.len() as u32, shape.method, shape.is_software));
+            } else {
+                let entries = &self.entries[range.start as usize..range.end as usize];
+                push_batches(&mut draws, entries.iter().map(|&entry| shape.vertex_count(tables, kind, entry)));
+            }
+            parts[kind as usize] = first..draws.len() as u32;
+        }
+        (draws, parts)
+    }
+}
+
+/// Vertices that a draw should generate on a software driver: on Mesa 22.3's, larger batches cost more by their square,
+/// smaller ones by their number (`planish bench --tess`).
+const BATCH_VERTICES: u32 = 1024;
+
+/// What the shape of draws depends on.
+#[derive(Clone, Copy, Debug)]
+pub struct DrawShape<'a> {
+    /// Surface method.
+    pub method: SurfaceMethod,
+    /// Spacing.
+    pub spacing: Spacing,
+    /// Tess factor of each level.
+    pub factors: &'a [f32; FACTOR_COUNT],
+    /// Whether the device is a software driver.
+    pub is_software: bool,
+}
+
+impl DrawShape<'_> {
+    /// About how many vertices a patch generates.
+    fn vertex_count(&self, tables: &Tables, kind: PatchKind, entry: u32) -> u32 {
+        match kind {
+            PatchKind::Filling => {
+                if self.spacing == Spacing::FractionalEven {
+                    9
+                } else {
+                    4
+                }
+            }
+            PatchKind::Regular | PatchKind::Transition => {
+                let level = usize::from(tables.patches[entry as usize].info.level);
+                let side = segment_count(self.factors[level], self.spacing) + 1;
+                side * side
+            }
+        }
+    }
+}
+
+/// One draw for each run of patches that together generate about [`BATCH_VERTICES`].
+fn push_batches(draws: &mut Vec<DrawArguments>, vertex_counts: impl Iterator<Item = u32>) {
+    let (mut vertices, mut batch) =
+        (0, DrawArguments { vertex_count: 0, instance_count: 1, first_vertex: 0, first_instance: 0 });
+    for count in vertex_counts {
+        if batch.vertex_count > 0 && vertices + count > BATCH_VERTICES {
+            draws.push(batch);
+            batch = DrawArguments { vertex_count: 0, first_vertex: batch.first_vertex + batch.vertex_count, ..batch };
+            vertices = 0;
+        }
+        batch.vertex_count += 1;
+        vertices += count;
+    }
+    if batch.vertex_count > 0 {
+        draws.push(batch);
     }
 }
 
@@ -69,5 +140,31 @@ pub fn draw_arguments(first: u32, count: u32, method: SurfaceMethod, is_software
         instance_count: if instances { count } else { 1 },
         first_vertex: scale * first,
         first_instance: 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn batches_cover_every_patch_once_and_stay_small() {
+        let mut draws = Vec::new();
+        push_batches(&mut draws, (0..1000).map(|i| if i < 10 { 4225 } else { 25 }));
+        let mut next = 0;
+        for draw in &draws {
+            assert_eq!((draw.first_vertex, draw.instance_count), (next, 1));
+            next += draw.vertex_count;
+        }
+        assert_eq!(next, 1000);
+        assert!(draws[..10].iter().all(|draw| draw.vertex_count == 1));
+        assert_eq!(draws[10].vertex_count, 1024 / 25);
+    }
+
+    #[test]
+    fn an_empty_list_has_no_batch() {
+        let mut draws = Vec::new();
+        push_batches(&mut draws, std::iter::empty());
+        assert!(draws.is_empty());
     }
 }

@@ -148,4 +148,3 @@ fn pass_name(options: &PipelineOptions, kind: PatchKind) -> &'static str {
         (SurfaceMethod::Fas, PatchKind::Filling) => "filling quads",
     }
 }
-

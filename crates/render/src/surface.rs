@@ -1,5 +1,6 @@
 //! A cage on the GPU: its tables, and the buffers that its frames fill.
 
+use std::ops::Range;
 use std::time::Instant;
 
 use planish_gpu::{Buffer, Device, Encoder};
@@ -8,9 +9,10 @@ use planish_subdiv::patch::PatchInfo;
 use planish_subdiv::refine::{RefineOptions, Refinement};
 use planish_subdiv::tables::Tables;
 
+use crate::density::FACTOR_COUNT;
 use crate::error::Error;
 use crate::limit::Limit;
-use crate::lists::Lists;
+use crate::lists::{DrawShape, Lists};
 use crate::options::{Spacing, SurfaceMethod};
 use crate::subdivide::Subdivide;
 use crate::upload::{array, mapped, table};
@@ -95,6 +97,8 @@ pub struct Surface {
     pub(crate) desc: SurfaceDesc,
     pub(crate) tables: Tables,
     pub(crate) lists: Lists,
+    /// Each list's part of the indirect draws.
+    pub(crate) draw_ranges: [Range<u32>; 3],
     pub(crate) buffers: Buffers,
     times: PreprocessTimes,
     memory: MemoryBytes,
@@ -102,10 +106,20 @@ pub struct Surface {
 
 impl Surface {
     /// Uploads what [`preprocess`] made, and the cage's positions.
-    pub fn new(device: &Device, mesh: &ControlMesh, desc: SurfaceDesc, made: Preprocessed) -> Result<Self, Error> {
+    /// `factors` are those of [`crate::density::level_factors`].
+    pub fn new(
+        device: &Device,
+        mesh: &ControlMesh,
+        desc: SurfaceDesc,
+        made: Preprocessed,
+        factors: &[f32; FACTOR_COUNT],
+    ) -> Result<Self, Error> {
         let start = Instant::now();
         let Preprocessed { tables, mut times } = made;
         let lists = Lists::new(&tables);
+        let shape =
+            DrawShape { method: desc.method, spacing: desc.spacing, factors, is_software: device.is_software() };
+        let (draws, draw_ranges) = lists.draws(&tables, &shape);
         let stencils = &tables.stencils;
         let limits = &tables.limits;
         let buffers = Buffers {
@@ -122,11 +136,11 @@ impl Surface {
             quads: table(device, "filling quads", &quads(&tables))?,
             midpoints: table(device, "filling midpoints", &tables.filling_midpoints)?,
             list: table(device, "render lists", &lists.entries)?,
-            draws: table(device, "draws", &lists.draws(desc.method, device.is_software()))?,
+            draws: table(device, "draws", &draws)?,
         };
         times.upload = milliseconds(start);
         let memory = buffers.memory();
-        let surface = Self { desc, tables, lists, buffers, times, memory };
+        let surface = Self { desc, tables, lists, draw_ranges, buffers, times, memory };
         surface.set_cage(&mesh.positions)?;
         Ok(surface)
     }

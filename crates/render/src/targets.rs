@@ -64,7 +64,8 @@ impl Targets {
     }
 
     pub(crate) fn render<R>(&self, f: impl FnOnce(&RenderTargets<'_>) -> R) -> R {
-        let clears = [Clear::Float([0.0; 4]), Clear::Float([0.0; 4]), Clear::Float([0.0; 4]), Clear::Uint([NO_SURFACE; 4])];
+        let clears =
+            [Clear::Float([0.0; 4]), Clear::Float([0.0; 4]), Clear::Float([0.0; 4]), Clear::Uint([NO_SURFACE; 4])];
         let colors: Vec<_> =
             self.colors.iter().zip(clears).map(|(image, clear)| ColorTarget { image, clear }).collect();
         let depth = Some(DepthTarget { image: &self.depth, clear: Some(0.0) });

@@ -42,12 +42,7 @@ pub fn filling_triangle_count(method: SurfaceMethod, spacing: Spacing) -> u64 {
 }
 
 /// Number of triangles of a whole surface.
-pub fn triangle_count(
-    tables: &Tables,
-    factors: &[f32; FACTOR_COUNT],
-    method: SurfaceMethod,
-    spacing: Spacing,
-) -> u64 {
+pub fn triangle_count(tables: &Tables, factors: &[f32; FACTOR_COUNT], method: SurfaceMethod, spacing: Spacing) -> u64 {
     let patches: u64 = tables.patches.iter().map(|p| patch_triangle_count(&p.info, factors, spacing)).sum();
     patches + tables.filling.len() as u64 * filling_triangle_count(method, spacing)
 }
