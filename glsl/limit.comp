@@ -42,8 +42,9 @@ void main()
         precise float size = sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
         normal = normal / size;
     }
+    position = origin + position;
     LimitPoint result;
-    result.position = origin + position;
+    result.position = position;
     result.normal = normal;
     push.limits.v[thread] = result;
 }
