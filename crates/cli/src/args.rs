@@ -1,0 +1,397 @@
+//! The command line: every flag, once.
+
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+use anyhow::{Result, bail};
+use clap::builder::RangedU64ValueParser;
+use clap::{Args, Parser, Subcommand};
+use glam::Vec3;
+use planish_gpu::DeviceOptions;
+use planish_render::{Density, SurfaceMethod};
+
+use crate::aov::AovList;
+use crate::frames::FrameRange;
+use crate::names::{MethodName, SchemeName, SpacingName, ViewName, name_of};
+use crate::values::{self, FrameRate, MAX_LEVEL};
+
+/// Level that irregularities are isolated to at most.
+const DEFAULT_MAX_LEVEL: u32 = 10;
+/// Most samples a pixel.
+const MAX_SAMPLES: u64 = 1 << 16;
+/// Most timed frames.
+const MAX_REPEAT: u64 = 1_000_000;
+
+/// Renders subdivision surfaces with Vulkan tessellation shaders.
+#[derive(Debug, Parser)]
+#[command(name = "planish", version, max_term_width = 100, arg_required_else_help = false)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// What is told on the way.
+    #[command(flatten)]
+    pub console: ConsoleArguments,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render frames to EXR or PNG, by extension
+    Render(RenderArguments),
+    /// Write the tessellated limit surface, as the tessellation stages produce it, to PLY
+    Dump(DumpArguments),
+    /// Describe a scene: mesh, features, patches by level and type, memory; needs no device
+    Info(InfoArguments),
+    /// Time the surface methods side by side
+    Bench(BenchArguments),
+    /// List the Vulkan devices, and whether each can run planish (and if not, why)
+    Devices,
+}
+
+/// Flags of every command.
+#[derive(Debug, Args)]
+pub struct ConsoleArguments {
+    /// Say nothing but errors
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Explain what is done, on standard error
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+}
+
+/// `planish render`
+#[derive(Debug, Args)]
+pub struct RenderArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// File to write, .exr or .png; several may be given
+    #[arg(short, long = "output", value_name = "OUT", required = true)]
+    pub outputs: Vec<PathBuf>,
+    #[command(flatten)]
+    pub surface: SurfaceArguments,
+    #[command(flatten)]
+    pub view: ViewArguments,
+    /// Samples a pixel, averaged
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = RangedU64ValueParser::<u32>::new().range(1..=MAX_SAMPLES))]
+    pub samples: u32,
+    /// Extra layers of EXR files: z, n, p, uv, face, patch, level, tess; always of one sample at the pixel's centre
+    #[arg(long, value_name = "LIST", default_value = "", hide_default_value = true)]
+    pub aov: AovList,
+    /// What the beauty image shows
+    #[arg(long = "view", value_name = "VIEW", value_enum, default_value_t = ViewName::Shaded)]
+    pub shown: ViewName,
+    #[command(flatten)]
+    pub frames: FrameArguments,
+    #[command(flatten)]
+    pub device: DeviceArguments,
+}
+
+/// `planish dump`
+#[derive(Debug, Args)]
+pub struct DumpArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// File to write, .ply
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub surface: SurfaceArguments,
+    #[command(flatten)]
+    pub view: ViewArguments,
+    #[command(flatten)]
+    pub frames: FrameArguments,
+    #[command(flatten)]
+    pub device: DeviceArguments,
+}
+
+/// `planish info`
+#[derive(Debug, Args)]
+pub struct InfoArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub surface: SurfaceArguments,
+    #[command(flatten)]
+    pub view: ViewArguments,
+    /// Refine so many times and print the median times
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = repeat_parser())]
+    pub repeat: u32,
+}
+
+/// `planish bench`
+#[derive(Debug, Args)]
+pub struct BenchArguments {
+    /// Scenes to time, each in its default view
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<PathBuf>,
+    /// Drop degenerate faces with a warning instead of refusing the file
+    #[arg(long)]
+    pub repair: bool,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Levels at which fas, at tess factor 2^level, is compared with uniform refinement to that level
+    #[arg(long, value_name = "A-B", default_value = "0-5", value_parser = values::levels)]
+    pub levels: RangeInclusive<u32>,
+    /// Time fas alone at these tess factors instead
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = values::tess_factor, conflicts_with_all = ["levels", "cpu"])]
+    pub tess: Vec<f32>,
+    /// Time the building of tables for these levels instead, on one thread of the CPU; needs no device
+    #[arg(long)]
+    pub cpu: bool,
+    /// No irregularity is isolated deeper
+    #[arg(long, value_name = "L", default_value_t = DEFAULT_MAX_LEVEL, value_parser = level_parser())]
+    pub max_level: u32,
+    /// Spacing of tessellated points
+    #[arg(long, value_enum, default_value_t = SpacingName::Equal)]
+    pub spacing: SpacingName,
+    /// Draw what culling would leave out
+    #[arg(long)]
+    pub no_cull: bool,
+    /// Size of the image in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]
+    pub size: [u32; 2],
+    /// Timed frames, after one that is not timed
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = repeat_parser())]
+    pub repeat: u32,
+    /// Folder with osd_bench, OpenSubdiv's own pipeline, to time beside fas
+    #[arg(long, value_name = "DIR", env = "PLANISH_ORACLE_DIR")]
+    pub peer: Option<PathBuf>,
+    #[command(flatten)]
+    pub device: DeviceArguments,
+}
+
+/// Which file, and how it is read.
+#[derive(Debug, Args)]
+pub struct SceneArguments {
+    /// Scene file, .obj
+    #[arg(value_name = "SCENE")]
+    pub path: PathBuf,
+    /// Drop degenerate faces (a vertex twice, fewer than three) with a warning, instead of refusing the file
+    #[arg(long)]
+    pub repair: bool,
+}
+
+/// How the surface is evaluated.
+#[derive(Debug, Args)]
+pub struct SurfaceArguments {
+    /// Surface method
+    #[arg(long, value_enum, default_value_t = MethodName::Fas)]
+    method: MethodName,
+    /// Subdivision scheme, instead of the file's
+    #[arg(long, value_enum)]
+    scheme: Option<SchemeName>,
+    /// The same tess factor, at least 1, on every base edge
+    #[arg(long, value_name = "T", value_parser = values::tess_factor, conflicts_with = "edge_pixels", allow_negative_numbers = true)]
+    pub tess: Option<f32>,
+    /// Triangle edges of about so many pixels [default: 4]
+    #[arg(long, value_name = "P", value_parser = values::edge_pixels, allow_negative_numbers = true)]
+    pub edge_pixels: Option<f32>,
+    /// No irregularity is isolated deeper [default: 10]
+    #[arg(long = "max-level", value_name = "L", value_parser = level_parser())]
+    pub asked_max_level: Option<u32>,
+    /// Spacing of tessellated points
+    #[arg(long, value_enum, default_value_t = SpacingName::FractionalOdd)]
+    pub spacing: SpacingName,
+    /// Trade bitwise equal seams for speed
+    #[arg(long)]
+    pub no_watertight: bool,
+}
+
+impl SurfaceArguments {
+    /// The method; refused where it does not exist yet.
+    pub fn method(&self) -> Result<SurfaceMethod> {
+        match self.method {
+            MethodName::Fas => Ok(SurfaceMethod::Fas),
+            MethodName::Uniform => Ok(SurfaceMethod::Uniform),
+            other => bail!("method {} is not available yet (available: fas, uniform)", name_of(other)),
+        }
+    }
+
+    /// Refuses a scheme that does not exist yet.
+    pub fn check_scheme(&self) -> Result<()> {
+        match self.scheme {
+            None | Some(SchemeName::CatmullClark) => Ok(()),
+            Some(other) => bail!("scheme {} is not available yet (available: catmull-clark)", name_of(other)),
+        }
+    }
+
+    /// How finely to tessellate.
+    pub fn density(&self) -> Density {
+        match (self.tess, self.edge_pixels) {
+            (Some(factor), _) => Density::Tess(factor),
+            (None, Some(pixels)) => Density::EdgePixels(pixels),
+            (None, None) => Density::default(),
+        }
+    }
+
+    /// Level below which nothing is refined.
+    pub fn max_level(&self) -> u32 {
+        self.asked_max_level.unwrap_or(DEFAULT_MAX_LEVEL)
+    }
+}
+
+/// From where the scene is seen.
+#[derive(Debug, Args)]
+pub struct ViewArguments {
+    /// Camera of the scene [default: its first, else a default view]
+    #[arg(long, value_name = "NAME", conflicts_with = "eye")]
+    pub camera: Option<String>,
+    /// Where the camera stands
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true, requires = "target")]
+    pub eye: Option<Vec3>,
+    /// What the camera looks at
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true, requires = "eye")]
+    pub target: Option<Vec3>,
+    /// Vertical field of view in degrees [default: the camera's; 45 with --eye]
+    #[arg(long, value_name = "DEG", value_parser = values::field_of_view, allow_negative_numbers = true)]
+    pub fov: Option<f32>,
+    /// Size of the image in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]
+    pub size: [u32; 2],
+}
+
+/// Which frames, and what is told of them.
+#[derive(Debug, Args)]
+pub struct FrameArguments {
+    /// Frames A, A-B, A-BxS, A:B or A:BxS; of several, OUT holds #### where the number goes
+    #[arg(long, value_name = "RANGE", allow_hyphen_values = true)]
+    pub frames: Option<FrameRange>,
+    /// Frames a second
+    #[arg(long, value_name = "F", default_value = "24", value_parser = values::frame_rate)]
+    pub fps: FrameRate,
+    /// Draw what culling would leave out; dump never culls
+    #[arg(long)]
+    pub no_cull: bool,
+    /// Write counts and times as JSON to a file, or to standard output for -
+    #[arg(long, value_name = "FILE")]
+    pub stats: Option<PathBuf>,
+    /// Time so many frames, after one that is not timed
+    #[arg(long, value_name = "N", value_parser = repeat_parser())]
+    pub repeat: Option<u32>,
+}
+
+impl FrameArguments {
+    /// The frames asked for; of a scene that does not move, the current one is 0.
+    pub fn range(&self) -> FrameRange {
+        self.frames.unwrap_or(FrameRange::single(0))
+    }
+}
+
+/// Which device.
+#[derive(Debug, Args)]
+pub struct DeviceArguments {
+    /// Part of the device's name, or its index [default: discrete, then integrated, then software]
+    #[arg(long, value_name = "NAME|INDEX")]
+    device: Option<String>,
+    /// Run under Khronos validation with synchronization checks; any message is an error
+    #[arg(long)]
+    validation: bool,
+}
+
+impl DeviceArguments {
+    /// As the backend wants it.
+    pub fn options(&self) -> DeviceOptions {
+        DeviceOptions { validation: self.validation, selector: self.device.clone(), memory_budget: None }
+    }
+}
+
+fn repeat_parser() -> RangedU64ValueParser<u32> {
+    RangedU64ValueParser::new().range(1..=MAX_REPEAT)
+}
+
+fn level_parser() -> RangedU64ValueParser<u32> {
+    RangedU64ValueParser::new().range(0..=u64::from(MAX_LEVEL))
+}
+
+/// What is wrong with a command line, in one line, without the usage that follows in clap's own words.
+pub fn usage_error(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let paragraphs = text.split("\n\n").filter(|told| !told.starts_with("Usage:") && !told.starts_with("For more"));
+    let one_line =
+        |told: &str| told.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ");
+    let told = paragraphs.map(one_line).filter(|told| !told.is_empty()).collect::<Vec<_>>().join("; ");
+    format!("{} (planish --help explains)", told.strip_prefix("error: ").unwrap_or(&told))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+    use planish_render::{Spacing, View};
+
+    fn parse(line: &str) -> Result<Arguments, String> {
+        Arguments::try_parse_from(line.split(' ')).map_err(|error| usage_error(&error))
+    }
+
+    fn render(line: &str) -> RenderArguments {
+        match parse(format!("planish render a.obj -o a.exr {line}").trim_end()).unwrap().command {
+            Command::Render(arguments) => arguments,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn definitions_are_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn the_defaults_are_the_interface_s() {
+        let arguments = render("");
+        assert_eq!(arguments.surface.method().unwrap(), SurfaceMethod::Fas);
+        assert_eq!(arguments.surface.density(), Density::EdgePixels(4.0));
+        assert_eq!((arguments.surface.max_level(), arguments.view.size, arguments.samples), (10, [1280, 720], 1));
+        assert_eq!(Spacing::from(arguments.surface.spacing), Spacing::FractionalOdd);
+        assert_eq!(View::from(arguments.shown), View::Shaded);
+    }
+
+    #[test]
+    fn vectors_may_begin_with_a_minus() {
+        let arguments = render("--eye -1,2,3 --target -4,-5,-6");
+        assert_eq!(arguments.view.eye, Some(Vec3::new(-1.0, 2.0, 3.0)));
+        assert_eq!(arguments.view.target, Some(Vec3::new(-4.0, -5.0, -6.0)));
+    }
+
+    #[test]
+    fn stats_may_go_to_standard_output() {
+        assert_eq!(render("--stats -").frames.stats, Some(PathBuf::from("-")));
+    }
+
+    #[test]
+    fn methods_and_schemes_to_come_are_refused_when_asked_for() {
+        let message = render("--method dfas").surface.method().unwrap_err().to_string();
+        assert_eq!(message, "method dfas is not available yet (available: fas, uniform)");
+        let message = render("--scheme loop").surface.check_scheme().unwrap_err().to_string();
+        assert_eq!(message, "scheme loop is not available yet (available: catmull-clark)");
+        assert!(render("--scheme catmull-clark").surface.check_scheme().is_ok());
+    }
+
+    #[test]
+    fn wrong_usage_is_told_in_one_line() {
+        for line in [
+            "planish",
+            "planish paint",
+            "planish render a.obj",
+            "planish render -o a.exr",
+            "planish render a.obj -o a.exr --tess 2 --edge-pixels 3",
+            "planish render a.obj -o a.exr --eye 1,2,3",
+            "planish render a.obj -o a.exr --tess 0.5",
+            "planish render a.obj -o a.exr --tess -3",
+            "planish render a.obj -o a.exr --samples 0",
+            "planish render a.obj -o a.exr --size 0x5",
+            "planish render a.obj -o a.exr --max-level 16",
+            "planish render a.obj -o a.exr --aov z,paint",
+            "planish render a.obj -o a.exr --colour red",
+            "planish render a.obj -o a.exr -q -v",
+            "planish bench a.obj --cpu --tess 4",
+        ] {
+            let message = parse(line).err().unwrap_or_else(|| panic!("{line} was accepted"));
+            assert!(!message.contains('\n') && !message.contains("Usage"), "{line}: {message}");
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! What is measured of a frame: medians of frames in each of which the cage has moved.
+
+use std::time::Instant;
+
+use anyhow::Result;
+use planish_gpu::Device;
+use planish_render::{SurfaceDesc, SurfaceMethod, View};
+use serde::Serialize;
+
+use super::{Bench, median};
+use crate::cage::{Cage, milliseconds};
+use crate::offline::{Plan, Session, frame_camera};
+use crate::stats::{FrameStats, GpuStats, PatchStats, drawn_triangle_count};
+
+/// A method's frames at one setting.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Measured {
+    /// Level of the irregular leaves.
+    pub level: u32,
+    /// Patches that were drawn.
+    pub patches: PatchStats,
+    pub triangles: u64,
+    /// Median times of the stages.
+    pub gpu_ms: GpuStats,
+    /// Median time from cage upload to fence.
+    pub wall_ms: f64,
+}
+
+impl Measured {
+    /// Number of patches of all kinds.
+    pub fn patch_count(&self) -> u64 {
+        self.patches.regular + self.patches.transition + self.patches.quad
+    }
+}
+
+/// Draws and times a scene in its default view.
+pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) -> Result<Measured> {
+    let arguments = bench.arguments;
+    let camera = cage.default_view()?;
+    let Setting { method, level, tess_factor } = setting;
+    let plan = Plan {
+        frame_camera: frame_camera(&camera, arguments.size),
+        camera,
+        desc: SurfaceDesc { method, spacing: arguments.spacing.into(), level },
+        tess_factor,
+    };
+    let mut session = Session::new(device, cage, &plan, bench.console)?;
+    let images = session.images(View::Shaded, false, cage.is_closed() && !arguments.no_cull)?;
+    let mut cage_motion = CageMotion::new(cage);
+    session.run(cage_motion.positions(0), &images.frame)?;
+    let mut frames = Vec::new();
+    for frame in 1..=arguments.repeat as i32 {
+        let start = Instant::now();
+        let (report, _) = session.run(cage_motion.positions(frame), &images.frame)?;
+        let wall_ms = milliseconds(start);
+        frames.push(FrameStats::new(frame, &session, &report, wall_ms, drawn_triangle_count(&report)));
+    }
+    Ok(medians(session.surface.tables().last_level, &frames))
+}
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    pub method: SurfaceMethod,
+    pub level: u32,
+    pub tess_factor: f32,
+}
+
+fn medians(level: u32, frames: &[FrameStats]) -> Measured {
+    let of = |value: fn(&FrameStats) -> f64| median(frames.iter().map(value).collect());
+    let last = frames.last().cloned().unwrap_or_default();
+    Measured {
+        level,
+        patches: last.patches,
+        triangles: last.triangles,
+        gpu_ms: GpuStats {
+            subdivide: of(|frame| frame.gpu_ms.subdivide),
+            limit: of(|frame| frame.gpu_ms.limit),
+            draw: of(|frame| frame.gpu_ms.draw),
+            total: of(|frame| frame.gpu_ms.total),
+            ..GpuStats::default()
+        },
+        wall_ms: of(|frame| frame.wall_ms),
+    }
+}
+
+/// A cage that sways a little, as the peer's does: in frame k a vertex moves by 0.002 d sin(k / 2 + 3 y / d) along x, d
+/// being the diagonal of the bounding box.
+struct CageMotion<'a> {
+    rest: &'a [[f32; 3]],
+    moved: Vec<[f32; 3]>,
+    diagonal: f64,
+}
+
+impl<'a> CageMotion<'a> {
+    fn new(cage: &'a Cage) -> Self {
+        let rest = cage.mesh().positions.as_slice();
+        Self { rest, moved: rest.to_vec(), diagonal: cage.diagonal() }
+    }
+
+    fn positions(&mut self, frame: i32) -> &[[f32; 3]] {
+        /// Amplitude in diagonals.
+        const AMPLITUDE: f64 = 0.002;
+        for (moved, &[x, y, _]) in self.moved.iter_mut().zip(self.rest) {
+            let phase = 0.5 * f64::from(frame) + 3.0 * f64::from(y) / self.diagonal;
+            moved[0] = x + (AMPLITUDE * self.diagonal * phase.sin()) as f32;
+        }
+        &self.moved
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_time_has_its_own_median() {
+        let frame = |wall_ms, draw| {
+            let gpu_ms = GpuStats { draw, ..GpuStats::default() };
+            FrameStats { wall_ms, gpu_ms, triangles: 7, ..FrameStats::default() }
+        };
+        let measured = medians(3, &[frame(1.0, 9.0), frame(5.0, 2.0), frame(9.0, 3.0)]);
+        assert_eq!((measured.wall_ms, measured.gpu_ms.draw, measured.triangles, measured.level), (5.0, 3.0, 7, 3));
+    }
+}

@@ -1,0 +1,181 @@
+//! A scene file, and what its mesh is like.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+use planish_scene::{Camera, LoadOptions, Scene, load};
+use planish_subdiv::ControlMesh;
+use planish_subdiv::topology::{Level, NONE};
+use serde::Serialize;
+
+use crate::args::ViewArguments;
+use crate::console::Console;
+
+/// Vertical field of view of a camera given by its eye, in degrees.
+const DEFAULT_FOV: f32 = 45.0;
+
+/// A scene of one mesh.
+pub struct Cage {
+    path: PathBuf,
+    scene: Scene,
+    /// What the mesh is like.
+    pub facts: MeshFacts,
+    /// How long reading the file took, in milliseconds.
+    pub load_ms: f64,
+}
+
+impl Cage {
+    /// Reads a scene file; tells what is odd in it.
+    pub fn load(path: &Path, repair: bool, console: &Console) -> Result<Self> {
+        let start = Instant::now();
+        let scene = load(path, &LoadOptions { repair })?;
+        let load_ms = milliseconds(start);
+        for warning in &scene.warnings {
+            console.warn(format_args!("{}: {warning}", path.display()));
+        }
+        let [mesh] = scene.meshes.as_slice() else {
+            bail!("{}: found {} meshes, expected one; more are not supported yet", path.display(), scene.meshes.len());
+        };
+        let facts = MeshFacts::new(&mesh.control_mesh).with_context(|| path.display().to_string())?;
+        Ok(Self { path: path.to_owned(), scene, facts, load_ms })
+    }
+
+    /// The file, as it was named.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The control mesh.
+    pub fn mesh(&self) -> &ControlMesh {
+        &self.scene.meshes[0].control_mesh
+    }
+
+    /// Whether the mesh has texture coordinates.
+    pub fn has_uv(&self) -> bool {
+        self.scene.meshes[0].uv.is_some()
+    }
+
+    /// Length of the bounding box' diagonal.
+    pub fn diagonal(&self) -> f64 {
+        self.scene.bounds().map_or(0.0, |bounds| bounds.diagonal())
+    }
+
+    /// The camera asked for.
+    pub fn camera(&self, view: &ViewArguments) -> Result<Camera> {
+        if let (Some(eye), Some(target)) = (view.eye, view.target) {
+            let fov = view.fov.unwrap_or(DEFAULT_FOV);
+            return Ok(Camera::upright("command line", eye, target, fov, self.diagonal())?);
+        }
+        let mut camera = self.scene.camera(view.camera.as_deref()).with_context(|| self.path.display().to_string())?;
+        camera.fov_y_degrees = view.fov.unwrap_or(camera.fov_y_degrees);
+        Ok(camera)
+    }
+
+    /// The default view.
+    pub fn default_view(&self) -> Result<Camera> {
+        self.scene.default_view().with_context(|| self.path.display().to_string())
+    }
+
+    /// Whether the backs of triangles are never seen from outside.
+    pub fn is_closed(&self) -> bool {
+        self.facts.boundary_edges == 0 && self.mesh().holes.is_empty()
+    }
+}
+
+/// Milliseconds since `start`.
+pub fn milliseconds(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}
+
+/// Counts of a control mesh.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct MeshFacts {
+    /// Vertices, those that no face uses included.
+    pub vertices: usize,
+    /// Faces, holes included.
+    pub faces: usize,
+    /// Ptex faces: a quad is one, any other face one a side.
+    pub ptex_faces: u64,
+    /// Faces by number of sides.
+    pub faces_by_sides: BTreeMap<u32, u64>,
+    /// Edges of one face.
+    pub boundary_edges: u64,
+    /// Faces that belong to the surface and are no bicubic patch.
+    pub irregular_faces: u64,
+    /// Vertices with other than four faces inside, two on the boundary or one at a corner.
+    pub extraordinary_vertices: u64,
+    /// Those inside, by number of edges.
+    pub extraordinary_by_valence: BTreeMap<u32, u64>,
+    /// Those on the boundary, by number of edges.
+    pub boundary_extraordinary_by_valence: BTreeMap<u32, u64>,
+}
+
+impl MeshFacts {
+    fn new(mesh: &ControlMesh) -> Result<Self> {
+        let level = Level::from_mesh(mesh)?;
+        let mut facts = Self {
+            vertices: mesh.positions.len(),
+            faces: mesh.face_sizes.len(),
+            ptex_faces: mesh.ptex_face_count(),
+            ..Self::default()
+        };
+        for &sides in &mesh.face_sizes {
+            *facts.faces_by_sides.entry(sides).or_default() += 1;
+        }
+        facts.boundary_edges = (0..level.origins.len() as u32).filter(|&h| level.is_boundary(h)).count() as u64;
+        let is_irregular = |&face: &u32| level.is_drawn(face) && !level.is_regular(face);
+        facts.irregular_faces = (0..level.face_count()).filter(is_irregular).count() as u64;
+        for (vertex, &tag) in (0..).zip(&level.tags) {
+            if level.starts[vertex as usize] == NONE || !tag.is_extraordinary() {
+                continue;
+            }
+            facts.extraordinary_vertices += 1;
+            let faces = level.spokes(vertex).count() as u32;
+            if tag.is_boundary() {
+                *facts.boundary_extraordinary_by_valence.entry(faces + 1).or_default() += 1;
+            } else {
+                *facts.extraordinary_by_valence.entry(faces).or_default() += 1;
+            }
+        }
+        Ok(facts)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mesh(positions: usize, faces: &[&[u32]]) -> ControlMesh {
+        ControlMesh {
+            positions: (0..positions).map(|i| [i as f32, (i * i) as f32, 0.0]).collect(),
+            face_sizes: faces.iter().map(|face| face.len() as u32).collect(),
+            face_vertices: faces.concat(),
+            ..ControlMesh::default()
+        }
+    }
+
+    #[test]
+    fn a_cube_has_eight_vertices_of_valence_three_and_no_boundary() {
+        let faces: [&[u32]; 6] =
+            [&[0, 1, 3, 2], &[2, 3, 5, 4], &[4, 5, 7, 6], &[6, 7, 1, 0], &[1, 7, 5, 3], &[6, 0, 2, 4]];
+        let facts = MeshFacts::new(&mesh(8, &faces)).unwrap();
+        assert_eq!((facts.vertices, facts.faces, facts.boundary_edges, facts.irregular_faces), (8, 6, 0, 6));
+        assert_eq!(facts.extraordinary_by_valence, BTreeMap::from([(3, 8)]));
+        assert_eq!(facts.faces_by_sides, BTreeMap::from([(4, 6)]));
+    }
+
+    #[test]
+    fn a_vertex_that_no_face_uses_is_not_extraordinary() {
+        let facts = MeshFacts::new(&mesh(5, &[&[0, 1, 2, 3]])).unwrap();
+        assert_eq!((facts.vertices, facts.boundary_edges, facts.extraordinary_vertices), (5, 4, 0));
+    }
+
+    #[test]
+    fn boundary_vertices_count_their_edges() {
+        let facts = MeshFacts::new(&mesh(7, &[&[0, 1, 2], &[0, 2, 3, 4], &[0, 4, 5, 6]])).unwrap();
+        assert_eq!(facts.boundary_extraordinary_by_valence, BTreeMap::from([(4, 1)]));
+        assert_eq!((facts.ptex_faces, facts.irregular_faces), (5, 3));
+    }
+}

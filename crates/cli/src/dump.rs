@@ -1,0 +1,137 @@
+//! `planish dump`: the tessellated limit surface to PLY.
+
+use std::path::Path;
+use std::sync::mpsc::sync_channel;
+use std::time::Instant;
+
+use anyhow::{Result, anyhow};
+use planish_film::{DumpVertex, check_dump_output, write_ply_stream};
+use planish_gpu::{Recorded, SubmitReport};
+use planish_render::{CapturedVertex, DumpPasses};
+
+use crate::args::DumpArguments;
+use crate::cage::{Cage, milliseconds};
+use crate::console::Console;
+use crate::frames::frame_path;
+use crate::offline::{Plan, Session, check_validation, open_device};
+use crate::render::check_placeholder;
+use crate::stats::{FrameStats, Stats, StatsOutput};
+
+/// Captured parts that may wait for the disk.
+const QUEUED_PARTS: usize = 2;
+
+/// Runs the command.
+pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
+    let cage = Cage::load(&arguments.scene.path, arguments.scene.repair, console)?;
+    let range = arguments.frames.range();
+    check_placeholder(&arguments.output, range)?;
+    check_dump_output(&frame_path(&arguments.output, range.frames().next().unwrap_or_default()))?;
+    let stats_output = StatsOutput(arguments.frames.stats.as_ref());
+    stats_output.check()?;
+    let plan = Plan::new(&cage, &arguments.surface, &arguments.view)?;
+    let device = open_device(&arguments.device, console)?;
+    let mut session = Session::new(&device, &cage, &plan, console)?;
+    let start = Instant::now();
+    let passes = DumpPasses::new(&device, plan.desc.method, plan.desc.spacing)?;
+    session.pipelines_ms += milliseconds(start);
+    let dump = Dump { points: session.record_points()?, passes, session: &session, positions: &cage.mesh().positions };
+
+    let mut frames = Vec::new();
+    if arguments.frames.repeat.is_some() {
+        dump.frame(|_| Ok(()))?;
+    }
+    for (done, frame) in (0_u64..).zip(range.frames()) {
+        console.progress(format_args!("frame {frame} ({done} of {} done)", range.count()));
+        let path = frame_path(&arguments.output, frame);
+        let mut timed = Vec::new();
+        for _ in 0..arguments.frames.repeat.unwrap_or(0) {
+            timed.push(dump.frame(|_| Ok(()))?);
+        }
+        let written = dump.write(&path)?;
+        if timed.is_empty() {
+            timed.push(written);
+        }
+        let stats = |done: &Done| FrameStats::new(frame, &session, &done.report, done.wall_ms, Some(done.triangles));
+        frames.extend(timed.iter().map(stats));
+        console.explain(format_args!("wrote {}", path.display()));
+    }
+    console.end_progress();
+    stats_output.write(&Stats::new(&cage, &session, 0, frames))?;
+    check_validation(&device)
+}
+
+/// What a frame of a dump needs.
+struct Dump<'a> {
+    session: &'a Session,
+    positions: &'a [[f32; 3]],
+    points: Recorded,
+    passes: DumpPasses,
+}
+
+/// A frame that was captured.
+struct Done {
+    report: SubmitReport,
+    wall_ms: f64,
+    triangles: u64,
+}
+
+impl Dump<'_> {
+    /// Makes the points and captures all triangles. What the sink does with them is not timed.
+    fn frame(&self, mut sink: impl FnMut(&[CapturedVertex]) -> Result<()>) -> Result<Done> {
+        let start = Instant::now();
+        let (report, _) = self.session.run(self.positions, &self.points)?;
+        let Session { device, surface, constants, factors, .. } = self.session;
+        let (mut triangles, mut sink_ms) = (0, 0.0);
+        self.passes.capture(device, surface, constants, factors, |vertices| {
+            let start = Instant::now();
+            triangles += vertices.len() as u64 / 3;
+            let taken = sink(vertices);
+            sink_ms += milliseconds(start);
+            taken
+        })?;
+        Ok(Done { report, wall_ms: milliseconds(start) - sink_ms, triangles })
+    }
+
+    /// Writes a frame while it is captured: a dump of any size needs the memory of a few parts.
+    fn write(&self, path: &Path) -> Result<Done> {
+        let vertex_count = 3 * self.session.expected_triangle_count();
+        let (sender, receiver) = sync_channel::<Vec<DumpVertex>>(QUEUED_PARTS);
+        std::thread::scope(|scope| {
+            let writer = scope.spawn(move || write_ply_stream(path, vertex_count, receiver.into_iter().flatten()));
+            let captured = self.frame(move |vertices| {
+                sender.send(vertices.iter().map(dump_vertex).collect()).map_err(|_| anyhow!("the writer has stopped"))
+            });
+            let written = writer.join().map_err(|_| anyhow!("writing {} failed", path.display()))?;
+            match written {
+                // A capture that fails leaves the file too short: its own reason is the one to tell.
+                Err(planish_film::Error::StreamLength { .. }) if captured.is_err() => captured,
+                Err(error) => Err(error.into()),
+                Ok(()) => captured,
+            }
+        })
+    }
+}
+
+fn dump_vertex(vertex: &CapturedVertex) -> DumpVertex {
+    let [level, kind, ..] = vertex.level_and_kind.to_le_bytes();
+    let &CapturedVertex { position, normal, uv, ptex_face, .. } = vertex;
+    DumpVertex { position, normal, uv, face: ptex_face as i32, level, kind }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn level_and_kind_are_unpacked() {
+        let captured = CapturedVertex {
+            position: [1.0, 2.0, 3.0],
+            normal: [0.0, 1.0, 0.0],
+            uv: [0.25, 0.5],
+            ptex_face: 7,
+            level_and_kind: 5 | 2 << 8,
+        };
+        let vertex = dump_vertex(&captured);
+        assert_eq!((vertex.level, vertex.kind, vertex.face, vertex.uv), (5, 2, 7, [0.25, 0.5]));
+    }
+}

@@ -1,0 +1,287 @@
+//! `planish info`: what a scene holds, and what refinement makes of it. Needs no Vulkan device.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context, Result};
+use planish_render::{Preprocessed, SurfaceDesc, preprocess};
+use planish_subdiv::mesh::{BoundaryInterpolation, Creasing, FaceVaryingInterpolation, TriangleSubdivision};
+use planish_subdiv::tables::Tables;
+use planish_subdiv::{ControlMesh, patch::PatchInfo};
+use serde::Serialize;
+
+use crate::args::InfoArguments;
+use crate::bench::median;
+use crate::cage::{Cage, MeshFacts};
+use crate::console::{Console, print_output};
+use crate::offline::Plan;
+use crate::stats::method_name;
+use crate::text_table::{TextTable, bytes_text, milliseconds_text};
+
+/// Runs the command.
+pub fn run(arguments: &InfoArguments, console: &Console) -> Result<()> {
+    let cage = Cage::load(&arguments.scene.path, arguments.scene.repair, console)?;
+    let desc = surface_desc(arguments, &cage)?;
+    let mut made = preprocess(cage.mesh(), &desc).with_context(|| cage.path().display().to_string())?;
+    let (mut topology, mut tables) = (vec![made.times.topology], vec![made.times.tables]);
+    for _ in 1..arguments.repeat {
+        made = preprocess(cage.mesh(), &desc)?;
+        topology.push(made.times.topology);
+        tables.push(made.times.tables);
+    }
+    (made.times.topology, made.times.tables) = (median(topology), median(tables));
+    let info = Info::new(&cage, &desc, &made);
+    print_output(&if arguments.json { serde_json::to_string_pretty(&info)? + "\n" } else { info.to_text() })
+}
+
+/// What to refine: to the level that the density asks for, or exactly to `--max-level` if that is given alone.
+fn surface_desc(arguments: &InfoArguments, cage: &Cage) -> Result<SurfaceDesc> {
+    let surface = &arguments.surface;
+    match surface.asked_max_level {
+        Some(level) if surface.tess.is_none() && surface.edge_pixels.is_none() => {
+            surface.check_scheme()?;
+            Ok(SurfaceDesc { method: surface.method()?, spacing: surface.spacing.into(), level })
+        }
+        _ => Ok(Plan::new(cage, surface, &arguments.view)?.desc),
+    }
+}
+
+/// What is printed.
+#[derive(Debug, Serialize)]
+struct Info {
+    version: &'static str,
+    scene: String,
+    scheme: &'static str,
+    load_ms: f64,
+    mesh: MeshFacts,
+    features: Features,
+    refinement: RefinementInfo,
+}
+
+/// Tags and options of a mesh.
+#[derive(Debug, Serialize)]
+struct Features {
+    creases: usize,
+    corners: usize,
+    holes: usize,
+    edits: usize,
+    uv: bool,
+    boundary: &'static str,
+    creasing: &'static str,
+    triangles: &'static str,
+    face_varying: &'static str,
+}
+
+/// What refinement makes.
+#[derive(Debug, Serialize)]
+struct RefinementInfo {
+    method: &'static str,
+    /// Level of the irregular leaves.
+    level: u32,
+    preprocess_ms: BTreeMap<&'static str, f64>,
+    memory_bytes: BTreeMap<&'static str, u64>,
+    levels: Vec<LevelInfo>,
+}
+
+/// What one level holds.
+#[derive(Debug, Serialize)]
+struct LevelInfo {
+    points: u64,
+    regular: u32,
+    transition: u32,
+    quad: u32,
+}
+
+impl Info {
+    fn new(cage: &Cage, desc: &SurfaceDesc, made: &Preprocessed) -> Self {
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            scene: cage.path().display().to_string(),
+            scheme: "catmull-clark",
+            load_ms: cage.load_ms,
+            mesh: cage.facts.clone(),
+            features: Features::new(cage.mesh(), cage.has_uv()),
+            refinement: RefinementInfo::new(desc, made),
+        }
+    }
+
+    fn to_text(&self) -> String {
+        let mut table = TextTable::default();
+        let mut line = |name: &str, value: String| table.push([format!("{name:<22}{value}")]);
+        let mesh = &self.mesh;
+        line("scene", format!("{}, read in {} ms", self.scene, milliseconds_text(self.load_ms)));
+        line("vertices", mesh.vertices.to_string());
+        line("faces", format!("{} ({})", mesh.faces, histogram(&mesh.faces_by_sides, "of", "sides")));
+        line("ptex faces", mesh.ptex_faces.to_string());
+        line("irregular faces", mesh.irregular_faces.to_string());
+        line("extraordinary vertices", String::new());
+        line("  inside", histogram(&mesh.extraordinary_by_valence, "of valence", ""));
+        line("  on the boundary", histogram(&mesh.boundary_extraordinary_by_valence, "of valence", ""));
+        line("boundary edges", format!("{}, interpolation: {}", mesh.boundary_edges, self.features.boundary));
+        line("features", self.features.to_text());
+        self.refinement.describe(&mut line);
+        table.to_text() + "\n" + &self.refinement.levels_table().to_text()
+    }
+}
+
+/// "1452 of 4 sides, 3 of 5 sides".
+fn histogram(counts: &BTreeMap<u32, u64>, of: &str, unit: &str) -> String {
+    if counts.is_empty() {
+        return "none".to_owned();
+    }
+    let parts: Vec<String> =
+        counts.iter().map(|(key, count)| format!("{count} {of} {key} {unit}").trim_end().to_owned()).collect();
+    parts.join(", ")
+}
+
+impl Features {
+    fn new(mesh: &ControlMesh, uv: bool) -> Self {
+        let options = &mesh.options;
+        Self {
+            creases: mesh.creases.len(),
+            corners: mesh.corners.len(),
+            holes: mesh.holes.len(),
+            edits: mesh.edits.len(),
+            uv,
+            boundary: match options.boundary {
+                BoundaryInterpolation::None => "none",
+                BoundaryInterpolation::EdgeOnly => "edge only",
+                BoundaryInterpolation::EdgeAndCorner => "edge and corner",
+            },
+            creasing: match options.creasing {
+                Creasing::Uniform => "uniform",
+                Creasing::Chaikin => "chaikin",
+            },
+            triangles: match options.triangles {
+                TriangleSubdivision::CatmullClark => "catmull-clark",
+                TriangleSubdivision::Smooth => "smooth",
+            },
+            face_varying: match options.face_varying {
+                FaceVaryingInterpolation::None => "none",
+                FaceVaryingInterpolation::CornersOnly => "corners only",
+                FaceVaryingInterpolation::CornersPlus1 => "corners plus 1",
+                FaceVaryingInterpolation::CornersPlus2 => "corners plus 2",
+                FaceVaryingInterpolation::Boundaries => "boundaries",
+                FaceVaryingInterpolation::All => "all",
+            },
+        }
+    }
+
+    fn to_text(&self) -> String {
+        let counted = [
+            (self.creases, "creased edges"),
+            (self.corners, "sharp vertices"),
+            (self.holes, "holes"),
+            (self.edits, "hierarchical edits"),
+        ];
+        let mut parts: Vec<String> =
+            counted.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
+        if self.creases > 0 {
+            parts.push(format!("{} creasing", self.creasing));
+        }
+        if self.triangles == "smooth" {
+            parts.push("smooth triangles".to_owned());
+        }
+        if self.uv {
+            parts.push(format!("texture coordinates (interpolation: {})", self.face_varying));
+        }
+        if parts.is_empty() { "none".to_owned() } else { parts.join(", ") }
+    }
+}
+
+impl RefinementInfo {
+    fn new(desc: &SurfaceDesc, made: &Preprocessed) -> Self {
+        let tables = &made.tables;
+        let levels = tables.levels.iter().enumerate().map(|(level, points)| {
+            let counts = tables.counts.get(level).copied().unwrap_or_default();
+            LevelInfo {
+                points: points.points.len() as u64,
+                regular: counts.regular,
+                transition: counts.transition,
+                quad: counts.filling,
+            }
+        });
+        let point_bytes = size_of::<[f32; 3]>() as u64;
+        Self {
+            method: method_name(desc.method),
+            level: tables.last_level,
+            preprocess_ms: BTreeMap::from([("topology", made.times.topology), ("tables", made.times.tables)]),
+            memory_bytes: BTreeMap::from([
+                ("tables", table_bytes(tables)),
+                ("points", point_bytes * u64::from(tables.point_count())),
+            ]),
+            levels: levels.collect(),
+        }
+    }
+
+    fn describe(&self, line: &mut impl FnMut(&str, String)) {
+        let time = |name| milliseconds_text(self.preprocess_ms[name]);
+        line("refinement", format!("{}, to level {}", self.method, self.level));
+        line("  time", format!("{} ms topology, {} ms tables", time("topology"), time("tables")));
+        let bytes = |name| bytes_text(self.memory_bytes[name]);
+        line("  memory", format!("{} tables, {} points", bytes("tables"), bytes("points")));
+    }
+
+    fn levels_table(&self) -> TextTable {
+        let mut table = TextTable::new(&["level", "points", "regular", "transition", "quad"]);
+        let mut sum = LevelInfo { points: 0, regular: 0, transition: 0, quad: 0 };
+        let row = |name: String, level: &LevelInfo| {
+            [
+                name,
+                level.points.to_string(),
+                level.regular.to_string(),
+                level.transition.to_string(),
+                level.quad.to_string(),
+            ]
+        };
+        for (k, level) in self.levels.iter().enumerate() {
+            table.push(row(k.to_string(), level));
+            sum.points += level.points;
+            sum.regular += level.regular;
+            sum.transition += level.transition;
+            sum.quad += level.quad;
+        }
+        table.push(row("all".to_owned(), &sum));
+        table
+    }
+}
+
+/// Bytes that the tables take on a device.
+pub fn table_bytes(tables: &Tables) -> u64 {
+    /// First index, first weight and count.
+    const ROW: usize = size_of::<[u32; 3]>();
+    let info = size_of_val(&PatchInfo::default().pack());
+    let (stencils, limits) = (&tables.stencils, &tables.limits);
+    let bytes = [
+        (stencils.rows.len() + limits.rows.len()) * ROW,
+        size_of_val(stencils.indices.as_slice()),
+        size_of_val(stencils.weights.as_slice()),
+        size_of_val(limits.indices.as_slice()),
+        size_of_val(limits.weights.as_slice()),
+        tables.patches.len() * (size_of::<[u32; 16]>() + info),
+        tables.filling.len() * (size_of::<[u32; 4]>() + info),
+        size_of_val(tables.filling_midpoints.as_slice()),
+    ];
+    bytes.iter().sum::<usize>() as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn histograms_read_as_a_sentence() {
+        assert_eq!(histogram(&BTreeMap::from([(3, 8), (4, 20)]), "of", "sides"), "8 of 3 sides, 20 of 4 sides");
+        assert_eq!(histogram(&BTreeMap::new(), "of", "sides"), "none");
+    }
+
+    #[test]
+    fn features_name_what_is_there_alone() {
+        let mut mesh = ControlMesh::default();
+        assert_eq!(Features::new(&mesh, false).to_text(), "none");
+        mesh.holes = vec![3, 4];
+        assert_eq!(
+            Features::new(&mesh, true).to_text(),
+            "2 holes, texture coordinates (interpolation: corners plus 2)"
+        );
+    }
+}

@@ -1,0 +1,71 @@
+//! Names on the command line for what the renderer offers.
+
+use clap::ValueEnum;
+use planish_render::{Spacing, View};
+
+/// Surface methods by name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum MethodName {
+    Fas,
+    Dfas,
+    Gregory,
+    Table,
+    Uniform,
+}
+
+/// Subdivision schemes by name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum SchemeName {
+    CatmullClark,
+    Loop,
+    Bilinear,
+}
+
+/// Spacings by name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum SpacingName {
+    Equal,
+    FractionalOdd,
+    FractionalEven,
+}
+
+impl From<SpacingName> for Spacing {
+    fn from(name: SpacingName) -> Self {
+        match name {
+            SpacingName::Equal => Self::Equal,
+            SpacingName::FractionalOdd => Self::FractionalOdd,
+            SpacingName::FractionalEven => Self::FractionalEven,
+        }
+    }
+}
+
+/// Views by name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum ViewName {
+    Shaded,
+    Normal,
+    Patch,
+    Level,
+    Tess,
+    Uv,
+    Wire,
+}
+
+impl From<ViewName> for View {
+    fn from(name: ViewName) -> Self {
+        match name {
+            ViewName::Shaded => Self::Shaded,
+            ViewName::Normal => Self::Normal,
+            ViewName::Patch => Self::Patch,
+            ViewName::Level => Self::Level,
+            ViewName::Tess => Self::Tess,
+            ViewName::Uv => Self::Uv,
+            ViewName::Wire => Self::Wire,
+        }
+    }
+}
+
+/// A value as it is written on the command line.
+pub fn name_of(value: impl ValueEnum) -> String {
+    value.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+}

@@ -1,0 +1,322 @@
+//! The JSON of `--stats`.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use planish_gpu::{Device, SubmitReport};
+use planish_render::SurfaceMethod;
+use serde::Serialize;
+
+use crate::cage::Cage;
+use crate::console::print_output;
+use crate::offline::Session;
+
+/// The path that stands for standard output.
+const STANDARD_OUTPUT: &str = "-";
+
+/// Counts and times of a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Stats {
+    pub version: &'static str,
+    pub device: DeviceStats,
+    pub method: &'static str,
+    pub scheme: &'static str,
+    pub scene: String,
+    pub mesh: MeshStats,
+    pub preprocess_ms: PreprocessStats,
+    pub memory_bytes: MemoryStats,
+    pub frames: Vec<FrameStats>,
+}
+
+/// What ran it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct DeviceStats {
+    pub name: String,
+    pub driver: String,
+    #[serde(rename = "type")]
+    pub kind: String,
+}
+
+impl DeviceStats {
+    /// Of a device.
+    pub fn new(device: &Device) -> Self {
+        Self { name: device.name().to_owned(), driver: device.driver().to_owned(), kind: device.kind().to_string() }
+    }
+}
+
+/// The cage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct MeshStats {
+    pub vertices: u64,
+    pub faces: u64,
+    pub irregular_faces: u64,
+    pub extraordinary_vertices: u64,
+}
+
+/// Milliseconds of the work done once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PreprocessStats {
+    pub load: f64,
+    pub topology: f64,
+    pub tables: f64,
+    pub upload: f64,
+    pub pipelines: f64,
+}
+
+/// Bytes on the device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct MemoryStats {
+    pub tables: u64,
+    pub points: u64,
+    pub lists: u64,
+    pub images: u64,
+}
+
+/// One frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct FrameStats {
+    pub frame: i32,
+    pub patches: PatchStats,
+    /// Tessellator patches that the transition patches were drawn as.
+    pub subpatches: u64,
+    /// Of all kinds.
+    pub patches_by_level: Vec<u64>,
+    pub triangles: u64,
+    pub gpu_ms: GpuStats,
+    /// From cage upload to fence, in milliseconds.
+    pub wall_ms: f64,
+}
+
+/// Patches by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PatchStats {
+    pub regular: u64,
+    pub transition: u64,
+    pub quad: u64,
+    /// How many of the quads are as large as they are only because refinement had to end.
+    pub truncated: u64,
+}
+
+/// Milliseconds by timestamp queries; 0 where a method lacks the stage or a device timestamps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct GpuStats {
+    pub density: f64,
+    pub select: f64,
+    pub subdivide: f64,
+    pub limit: f64,
+    pub draw: f64,
+    pub total: f64,
+}
+
+impl GpuStats {
+    /// From the times since the first of them: `start`, then one at the end of each stage, named after it.
+    pub fn new(timestamps: &[(String, f64)]) -> Self {
+        let mut stats = Self::default();
+        for [(_, start), (stage, end)] in timestamps.array_windows() {
+            let milliseconds = end - start;
+            match stage.as_str() {
+                "subdivide" => stats.subdivide += milliseconds,
+                "limit" => stats.limit += milliseconds,
+                "draw" => stats.draw += milliseconds,
+                _ => {}
+            }
+        }
+        stats.total = timestamps.last().map_or(0.0, |(_, end)| *end);
+        stats
+    }
+}
+
+impl FrameStats {
+    /// Of a frame that was drawn; `triangles` as the device counted them, if it did.
+    pub fn new(frame: i32, session: &Session, report: &SubmitReport, wall_ms: f64, triangles: Option<u64>) -> Self {
+        let tables = session.surface.tables();
+        let counts = tables.total_counts();
+        let is_cut_short = session.tess_factor > (tables.last_level as f32).exp2();
+        let quad = u64::from(counts.filling);
+        Self {
+            frame,
+            patches: PatchStats {
+                regular: counts.regular.into(),
+                transition: counts.transition.into(),
+                quad,
+                truncated: if is_cut_short { quad } else { 0 },
+            },
+            subpatches: counts.transition.into(),
+            patches_by_level: tables
+                .counts
+                .iter()
+                .map(|c| u64::from(c.regular) + u64::from(c.transition) + u64::from(c.filling))
+                .collect(),
+            triangles: triangles.unwrap_or_else(|| session.expected_triangle_count()),
+            gpu_ms: GpuStats::new(&report.timestamps),
+            wall_ms,
+        }
+    }
+}
+
+/// Triangles that a frame's draws sent to the rasterizer, where the device counts them.
+pub fn drawn_triangle_count(report: &SubmitReport) -> Option<u64> {
+    let counted = report.statistics.iter().filter(|(name, _)| name == "draw");
+    counted.map(|(_, statistics)| statistics.clipping_invocations).reduce(|a, b| a + b)
+}
+
+impl Stats {
+    /// Of a run; `image_bytes` on the device.
+    pub fn new(cage: &Cage, session: &Session, image_bytes: u64, frames: Vec<FrameStats>) -> Self {
+        let (times, memory) = (session.surface.times(), session.surface.memory());
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            device: DeviceStats::new(&session.device),
+            method: method_name(session.surface.desc().method),
+            scheme: "catmull-clark",
+            scene: cage.path().display().to_string(),
+            mesh: MeshStats {
+                vertices: cage.facts.vertices as u64,
+                faces: cage.facts.faces as u64,
+                irregular_faces: cage.facts.irregular_faces,
+                extraordinary_vertices: cage.facts.extraordinary_vertices,
+            },
+            preprocess_ms: PreprocessStats {
+                load: cage.load_ms,
+                topology: times.topology,
+                tables: times.tables,
+                upload: times.upload,
+                pipelines: session.pipelines_ms,
+            },
+            memory_bytes: MemoryStats {
+                tables: memory.tables,
+                points: memory.points,
+                lists: memory.lists,
+                images: image_bytes,
+            },
+            frames,
+        }
+    }
+}
+
+/// The method as it is written on the command line.
+pub fn method_name(method: SurfaceMethod) -> &'static str {
+    match method {
+        SurfaceMethod::Fas => "fas",
+        SurfaceMethod::Uniform => "uniform",
+    }
+}
+
+/// Where the stats go.
+pub struct StatsOutput<'a>(pub Option<&'a PathBuf>);
+
+impl StatsOutput<'_> {
+    /// Whether they could be written now.
+    pub fn check(&self) -> Result<()> {
+        match self.0 {
+            Some(path) if !is_standard_output(path) => create_beside(path).map(drop),
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes them, whole or not at all.
+    pub fn write(&self, stats: &Stats) -> Result<()> {
+        let Some(path) = self.0 else { return Ok(()) };
+        let mut text = serde_json::to_string_pretty(stats)?;
+        text.push('\n');
+        if is_standard_output(path) {
+            return print_output(&text);
+        }
+        let mut file = create_beside(path)?;
+        file.write_all(text.as_bytes()).with_context(|| cannot_write(path))?;
+        file.persist(path).map_err(|error| error.error).with_context(|| cannot_write(path))?;
+        Ok(())
+    }
+}
+
+fn is_standard_output(path: &Path) -> bool {
+    path.as_os_str() == STANDARD_OUTPUT
+}
+
+fn cannot_write(path: &Path) -> String {
+    format!("cannot write {}", path.display())
+}
+
+/// A temporary file in the same folder, with the permissions of any new file.
+fn create_beside(path: &Path) -> Result<tempfile::NamedTempFile> {
+    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    anyhow::ensure!(!path.is_dir(), "{}: it is a folder", cannot_write(path));
+    tempfile::Builder::new()
+        .prefix(".planish-")
+        .make_in(folder, |temporary| File::create_new(temporary))
+        .with_context(|| cannot_write(path))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    fn keys(value: &Value) -> Vec<&str> {
+        value.as_object().unwrap().keys().map(String::as_str).collect()
+    }
+
+    #[test]
+    fn the_shape_is_the_interface_s() {
+        let stats = Stats { frames: vec![FrameStats::default()], ..Stats::default() };
+        let json = serde_json::to_value(&stats).unwrap();
+        let sorted = |mut names: Vec<&'static str>| {
+            names.sort_unstable();
+            names
+        };
+        let expected = sorted(vec![
+            "version",
+            "device",
+            "method",
+            "scheme",
+            "scene",
+            "mesh",
+            "preprocess_ms",
+            "memory_bytes",
+            "frames",
+        ]);
+        assert_eq!(keys(&json), expected);
+        assert_eq!(keys(&json["device"]), ["driver", "name", "type"]);
+        assert_eq!(keys(&json["mesh"]), ["extraordinary_vertices", "faces", "irregular_faces", "vertices"]);
+        assert_eq!(keys(&json["preprocess_ms"]), ["load", "pipelines", "tables", "topology", "upload"]);
+        assert_eq!(keys(&json["memory_bytes"]), ["images", "lists", "points", "tables"]);
+        let frame = &json["frames"][0];
+        let expected =
+            sorted(vec!["frame", "patches", "subpatches", "patches_by_level", "triangles", "gpu_ms", "wall_ms"]);
+        assert_eq!(keys(frame), expected);
+        assert_eq!(keys(&frame["patches"]), ["quad", "regular", "transition", "truncated"]);
+        assert_eq!(keys(&frame["gpu_ms"]), ["density", "draw", "limit", "select", "subdivide", "total"]);
+        assert_eq!(frame["triangles"], json!(0));
+    }
+
+    #[test]
+    fn stages_last_from_the_time_before_to_their_own() {
+        let times = [("start", 0.0), ("subdivide", 2.0), ("limit", 2.5), ("draw", 10.0)];
+        let stats = GpuStats::new(&times.map(|(name, time)| (name.to_owned(), time)));
+        assert_eq!((stats.subdivide, stats.limit, stats.draw, stats.total), (2.0, 0.5, 7.5, 10.0));
+        assert_eq!(GpuStats::new(&[]), GpuStats::default());
+    }
+
+    #[test]
+    fn stats_are_written_whole_and_over_what_was_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("stats.json");
+        std::fs::write(&path, "old").unwrap();
+        let output = StatsOutput(Some(&path));
+        output.check().unwrap();
+        output.write(&Stats::default()).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(serde_json::from_str::<Value>(&text).is_ok());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_folder_that_is_not_there_is_found_out_before() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("absent").join("stats.json");
+        assert!(StatsOutput(Some(&path)).check().unwrap_err().to_string().contains("absent"));
+        assert!(StatsOutput(Some(&folder.path().to_owned())).check().is_err());
+    }
+}

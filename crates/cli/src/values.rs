@@ -1,0 +1,144 @@
+//! What the values of flags mean.
+
+use std::ops::RangeInclusive;
+
+use glam::Vec3;
+
+/// Most pixels in a row or a column.
+const MAX_EXTENT: u32 = 16384;
+/// Deepest level that can be asked for; [`planish_subdiv::refine::MAX_LEVEL`].
+pub const MAX_LEVEL: u32 = planish_subdiv::refine::MAX_LEVEL;
+
+/// `WxH`.
+pub fn size(text: &str) -> Result<[u32; 2], String> {
+    let extent = |text: &str| text.parse().ok().filter(|pixels| (1..=MAX_EXTENT).contains(pixels));
+    text.split_once('x')
+        .and_then(|(width, height)| Some([extent(width)?, extent(height)?]))
+        .ok_or_else(|| format!("expected WIDTHxHEIGHT, each 1 to {MAX_EXTENT} pixels"))
+}
+
+/// `x,y,z`.
+pub fn vector(text: &str) -> Result<Vec3, String> {
+    let coordinates: Option<Vec<f32>> =
+        text.split(',').map(|number| number.trim().parse().ok().filter(|c: &f32| c.is_finite())).collect();
+    match coordinates.as_deref() {
+        Some(&[x, y, z]) => Ok(Vec3::new(x, y, z)),
+        _ => Err("expected three finite numbers x,y,z".to_owned()),
+    }
+}
+
+/// A tess factor.
+pub fn tess_factor(text: &str) -> Result<f32, String> {
+    number(text, |factor| factor >= 1.0, "a number of at least 1")
+}
+
+/// A length in pixels.
+pub fn edge_pixels(text: &str) -> Result<f32, String> {
+    number(text, |pixels| pixels > 0.0, "a number above 0")
+}
+
+/// A field of view.
+pub fn field_of_view(text: &str) -> Result<f32, String> {
+    number(text, |degrees| degrees > 0.0 && degrees < 180.0, "more than 0 and less than 180 degrees")
+}
+
+fn number(text: &str, is_good: impl Fn(f32) -> bool, expected: &str) -> Result<f32, String> {
+    let good = |number: &f32| number.is_finite() && is_good(*number);
+    text.parse().ok().filter(good).ok_or_else(|| format!("expected {expected}"))
+}
+
+/// Levels `A-B`, or one level.
+pub fn levels(text: &str) -> Result<RangeInclusive<u32>, String> {
+    let level = |text: &str| text.parse().ok().filter(|level| *level <= MAX_LEVEL);
+    let (first, last) = text.split_once('-').unwrap_or((text, text));
+    match (level(first), level(last)) {
+        (Some(first), Some(last)) if first <= last => Ok(first..=last),
+        _ => Err(format!("expected a level or levels A-B, 0 to {MAX_LEVEL}")),
+    }
+}
+
+/// Frames a second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameRate(f64);
+
+impl FrameRate {
+    /// A frame's time in seconds.
+    pub fn time(self, frame: i32) -> f32 {
+        (f64::from(frame) / self.0) as f32
+    }
+
+    /// As a fraction: whole rates, those of NTSC (a whole number times 1000 / 1001), or thousandths.
+    pub fn as_fraction(self) -> (i32, u32) {
+        /// Rates are written with two or three decimals.
+        const TOLERANCE: f64 = 0.005;
+        let (whole, ntsc) = (self.0.round(), (self.0 * 1.001).round());
+        if (self.0 - whole).abs() < 1e-6 {
+            (whole as i32, 1)
+        } else if (self.0 - ntsc / 1.001).abs() < TOLERANCE {
+            ((ntsc * 1000.0) as i32, 1001)
+        } else {
+            ((self.0 * 1000.0).round() as i32, 1000)
+        }
+    }
+}
+
+/// Frames a second, at most 10,000.
+pub fn frame_rate(text: &str) -> Result<FrameRate, String> {
+    let rate = text.parse().ok().filter(|rate| (0.001..=10_000.0).contains(rate));
+    rate.map(FrameRate).ok_or_else(|| "expected 0.001 to 10000 frames a second".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_width_times_height() {
+        assert_eq!(size("1280x720"), Ok([1280, 720]));
+        assert_eq!(size("1x16384"), Ok([1, 16384]));
+        for bad in ["", "1280", "1280x", "0x720", "1280x0", "16385x1", "1280X720", "-1x5", "1x2x3", "1.5x2"] {
+            assert!(size(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn vectors_are_three_finite_numbers() {
+        assert_eq!(vector("1,-2.5,3e2"), Ok(Vec3::new(1.0, -2.5, 300.0)));
+        assert_eq!(vector("-1, 0, 1"), Ok(Vec3::new(-1.0, 0.0, 1.0)));
+        for bad in ["", "1,2", "1,2,3,4", "1,2,x", "nan,0,0", "1,inf,0", "1e99,0,0", "1 2 3"] {
+            assert!(vector(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_refused() {
+        assert_eq!(tess_factor("13.7"), Ok(13.7));
+        assert_eq!(edge_pixels("0.5"), Ok(0.5));
+        assert_eq!(field_of_view("179.5"), Ok(179.5));
+        assert!(["0.99", "-1", "nan", "inf", "x"].iter().all(|bad| tess_factor(bad).is_err()));
+        assert!(["0", "-4", "nan", "inf"].iter().all(|bad| edge_pixels(bad).is_err()));
+        assert!(["0", "180", "nan"].iter().all(|bad| field_of_view(bad).is_err()));
+    }
+
+    #[test]
+    fn levels_are_a_range_or_one() {
+        assert_eq!(levels("0-5"), Ok(0..=5));
+        assert_eq!(levels("15"), Ok(15..=15));
+        assert!(["", "5-0", "0-16", "a", "1-", "-1"].iter().all(|bad| levels(bad).is_err()));
+    }
+
+    #[test]
+    fn rates_become_the_fractions_that_they_round() {
+        let fraction = |text: &str| frame_rate(text).unwrap().as_fraction();
+        assert_eq!(fraction("24"), (24, 1));
+        assert_eq!(fraction("23.976"), (24000, 1001));
+        assert_eq!(fraction("29.97"), (30000, 1001));
+        assert_eq!(fraction("12.5"), (12500, 1000));
+        assert!(["0", "-24", "nan", "inf", "1e9", "x"].iter().all(|bad| frame_rate(bad).is_err()));
+    }
+
+    #[test]
+    fn a_frame_s_time_is_its_number_over_the_rate() {
+        assert_eq!(frame_rate("24").unwrap().time(12), 0.5);
+    }
+}

@@ -1,0 +1,226 @@
+//! A pinhole camera, its matrices and the default view.
+use glam::camera::rh::{proj::vulkan::perspective_infinite_reverse, view::look_at_mat4};
+use glam::{Mat4, Vec3};
+
+use crate::{Bounds, Error};
+
+/// Default view: vertical field of view, degrees.
+const DEFAULT_FOV_Y_DEGREES: f32 = 45.0;
+/// Default view: direction from the centre of the box to the eye, not normalised.
+const DEFAULT_DIRECTION: glam::DVec3 = glam::DVec3::new(1.0, 0.6, 1.2);
+/// Default view: distance from the centre of the box to the eye, in diagonals of the box.
+const DEFAULT_DISTANCE: f64 = 1.1;
+/// Distance of the near plane, in diagonals of the box, for an eye no nearer to its target than in the default view.
+const NEAR: f64 = 0.05;
+/// Sine of the angle between up and the line of sight below which they count as parallel.
+const MIN_UP_SINE: f64 = 1e-5;
+
+/// A pinhole camera. [`Camera::new`] and its kin make only cameras whose matrices exist.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// The name in the file.
+    pub name: String,
+    /// Where it stands.
+    pub eye: Vec3,
+    /// The point in the middle of the image.
+    pub target: Vec3,
+    /// A direction that points upwards in the image.
+    pub up: Vec3,
+    /// Vertical field of view, degrees.
+    pub fov_y_degrees: f32,
+    /// Distance of the near plane; what is nearer is not drawn.
+    pub near: f32,
+    /// Distance of the far plane: infinite, as nothing is too far for a reversed depth in floating point.
+    pub far: f32,
+}
+
+impl Camera {
+    /// A camera that looks at a scene whose bounding box has the given diagonal. The near plane lies at 0.05 diagonals,
+    /// and nearer in proportion when the eye is nearer to its target than in the default view (1.1 diagonals).
+    ///
+    /// # Errors
+    /// When a coordinate is not finite, eye and target are the same point, `up` is zero or along the line of sight, the
+    /// field of view is not between 0 and 180 degrees (both excluded), or the diagonal is not positive.
+    pub fn new(
+        name: &str,
+        eye: Vec3,
+        target: Vec3,
+        up: Vec3,
+        fov_y_degrees: f32,
+        diagonal: f64,
+    ) -> Result<Self, Error> {
+        let refuse = |found: String, expected| Err(Error::Camera { found, expected });
+        if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
+            return refuse(format!("eye {eye}, target {target}, up {up}"), "finite coordinates");
+        }
+        let sight = target.as_dvec3() - eye.as_dvec3();
+        let distance = sight.length();
+        if distance == 0.0 {
+            return refuse(format!("eye and target both {eye}"), "two different points");
+        }
+        let up_length = up.as_dvec3().length();
+        if up_length == 0.0 || sight.cross(up.as_dvec3()).length() < MIN_UP_SINE * distance * up_length {
+            return refuse(format!("up {up} along the line of sight"), "an up direction across it");
+        }
+        if !(fov_y_degrees > 0.0 && fov_y_degrees < 180.0) {
+            return refuse(format!("a field of view of {fov_y_degrees} degrees"), "more than 0 and less than 180");
+        }
+        let near = (NEAR * diagonal.min(distance / DEFAULT_DISTANCE)) as f32;
+        if !(near > 0.0 && near.is_finite()) {
+            return refuse(format!("a scene of size {diagonal}"), "a size above zero that a 32-bit float can hold");
+        }
+        Ok(Self { name: name.to_owned(), eye, target, up, fov_y_degrees, near, far: f32::INFINITY })
+    }
+
+    /// A camera with up +Y; where it looks along Y, with up -Z when it looks down and +Z when it looks up.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn upright(name: &str, eye: Vec3, target: Vec3, fov_y_degrees: f32, diagonal: f64) -> Result<Self, Error> {
+        let sight = (target.as_dvec3() - eye.as_dvec3()).normalize_or_zero();
+        let vertical = sight.x.hypot(sight.z) < MIN_UP_SINE && sight.y != 0.0;
+        let up = if vertical { Vec3::Z * sight.y.signum() as f32 } else { Vec3::Y };
+        Self::new(name, eye, target, up, fov_y_degrees, diagonal)
+    }
+
+    /// The default view of what lies in a box: 45 degrees, up +Y, target = centre, eye = centre + 1.1 * diagonal *
+    /// normalize(1, 0.6, 1.2).
+    ///
+    /// # Errors
+    /// When the box is a single point.
+    pub fn default_view(bounds: &Bounds) -> Result<Self, Error> {
+        let (center, diagonal) = (bounds.center(), bounds.diagonal());
+        if diagonal == 0.0 {
+            return Err(Error::Camera {
+                found: format!("all points at {center}"),
+                expected: "points apart, for the default view",
+            });
+        }
+        let eye = center + DEFAULT_DISTANCE * diagonal * DEFAULT_DIRECTION.normalize();
+        Self::new("default", eye.as_vec3(), center.as_vec3(), Vec3::Y, DEFAULT_FOV_Y_DEGREES, diagonal)
+    }
+
+    /// World to camera: right-handed, x right, y up, the camera looks along -z.
+    pub fn view_matrix(&self) -> Mat4 {
+        look_at_mat4(self.eye, self.target, self.up)
+    }
+
+    /// Camera to Vulkan's clip space: y down, depth 1 at the near plane and 0 at infinity. `aspect` is width / height.
+    pub fn projection_matrix(&self, aspect: f32) -> Mat4 {
+        perspective_infinite_reverse(self.fov_y_degrees.to_radians(), aspect, self.near)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample_bounds() -> Bounds {
+        Bounds::of([[-1.0, 2.0, 3.0], [3.0, 8.0, 15.0]]).unwrap()
+    }
+
+    fn sample() -> Camera {
+        Camera::new("c", Vec3::new(3.0, 2.0, 5.0), Vec3::new(1.0, 0.5, -1.0), Vec3::Y, 40.0, 4.0).unwrap()
+    }
+
+    fn refusal(camera: Result<Camera, Error>) -> String {
+        camera.unwrap_err().to_string()
+    }
+
+    #[test]
+    fn default_view_is_the_interface_formula() {
+        let camera = Camera::default_view(&sample_bounds()).unwrap();
+        // The box is 4 x 6 x 12, its diagonal 14 and its centre (1, 5, 9); |(1, 0.6, 1.2)| = sqrt(2.8).
+        let step = 1.1 * 14.0 / 2.8f32.sqrt();
+        assert_eq!(camera.target, Vec3::new(1.0, 5.0, 9.0));
+        assert!((camera.eye - Vec3::new(1.0 + step, 5.0 + 0.6 * step, 9.0 + 1.2 * step)).length() < 1e-5);
+        assert_eq!((camera.up, camera.fov_y_degrees), (Vec3::Y, 45.0));
+        assert!((camera.near - 0.7).abs() < 1e-6);
+        assert_eq!(camera.far, f32::INFINITY);
+    }
+
+    #[test]
+    fn target_maps_to_the_image_centre() {
+        let camera = sample();
+        let clip = camera.projection_matrix(1.5) * camera.view_matrix() * camera.target.extend(1.0);
+        assert!((clip.x / clip.w).abs() < 1e-6 && (clip.y / clip.w).abs() < 1e-6);
+        assert!(clip.w > 0.0);
+    }
+
+    #[test]
+    fn up_in_the_world_is_up_in_the_image_where_y_points_down() {
+        let camera = sample();
+        let clip = camera.projection_matrix(1.0) * camera.view_matrix() * (camera.target + Vec3::Y).extend(1.0);
+        assert!(clip.y < 0.0);
+    }
+
+    #[test]
+    fn half_the_field_of_view_maps_to_the_image_border() {
+        let camera = Camera::new("c", Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 90.0, 1.0).unwrap();
+        let clip = camera.projection_matrix(2.0) * camera.view_matrix() * glam::Vec4::new(2.0, -1.0, -1.0, 1.0);
+        assert!((clip / clip.w - glam::Vec4::new(1.0, 1.0, clip.z / clip.w, 1.0)).length() < 1e-6);
+    }
+
+    #[test]
+    fn depth_is_one_at_the_near_plane_and_zero_at_infinity() {
+        let camera = Camera::new("c", Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 60.0, 1.0).unwrap();
+        let depth = |distance: f32| {
+            let clip = camera.projection_matrix(1.0) * glam::Vec4::new(0.0, 0.0, -distance, 1.0);
+            clip.z / clip.w
+        };
+        assert!((depth(camera.near) - 1.0).abs() < 1e-6);
+        assert!(depth(1e12) < 1e-9);
+        assert!(depth(1.0) > depth(2.0));
+    }
+
+    #[test]
+    fn near_plane_follows_an_eye_that_comes_close_and_stays_for_one_that_leaves() {
+        let near = |distance: f32| Camera::upright("c", Vec3::X * distance, Vec3::ZERO, 45.0, 2.0).unwrap().near;
+        assert!((near(2.2) - 0.1).abs() < 1e-6);
+        assert!((near(0.22) - 0.01).abs() < 1e-6);
+        assert!((near(220.0) - 0.1).abs() < 1e-6);
+    }
+
+    #[test]
+    fn eye_at_the_target_is_refused() {
+        let camera = Camera::new("c", Vec3::ONE, Vec3::ONE, Vec3::Y, 45.0, 1.0);
+        assert_eq!(refusal(camera), "camera: found eye and target both [1, 1, 1], expected two different points");
+    }
+
+    #[test]
+    fn up_along_the_line_of_sight_is_refused() {
+        let camera = Camera::new("c", Vec3::ZERO, Vec3::Y * 5.0, Vec3::Y, 45.0, 1.0);
+        assert!(refusal(camera).contains("up [0, 1, 0] along the line of sight"));
+        assert!(refusal(Camera::new("c", Vec3::ZERO, Vec3::X, Vec3::ZERO, 45.0, 1.0)).contains("up"));
+    }
+
+    #[test]
+    fn fields_of_view_outside_0_to_180_are_refused() {
+        for fov in [0.0, -10.0, 180.0, f32::NAN] {
+            assert!(refusal(Camera::new("c", Vec3::ZERO, Vec3::X, Vec3::Y, fov, 1.0)).contains("field of view"));
+        }
+    }
+
+    #[test]
+    fn coordinates_that_are_not_finite_are_refused() {
+        let camera = Camera::new("c", Vec3::new(f32::NAN, 0.0, 0.0), Vec3::X, Vec3::Y, 45.0, 1.0);
+        assert!(refusal(camera).contains("finite coordinates"));
+    }
+
+    #[test]
+    fn scenes_without_a_usable_size_are_refused() {
+        assert!(refusal(Camera::new("c", Vec3::ZERO, Vec3::X, Vec3::Y, 45.0, 0.0)).contains("a scene of size 0"));
+        let point = Bounds::of([[1.0; 3]]).unwrap();
+        assert!(refusal(Camera::default_view(&point)).contains("all points at [1, 1, 1]"));
+        let huge = Bounds::of([[f32::MIN; 3], [f32::MAX; 3]]).unwrap();
+        assert!(refusal(Camera::default_view(&huge)).contains("finite coordinates"));
+    }
+
+    #[test]
+    fn upright_cameras_may_look_straight_down_and_up() {
+        let down = Camera::upright("c", Vec3::Y, Vec3::ZERO, 45.0, 1.0).unwrap();
+        let up = Camera::upright("c", Vec3::NEG_Y, Vec3::ZERO, 45.0, 1.0).unwrap();
+        assert_eq!((down.up, up.up), (Vec3::NEG_Z, Vec3::Z));
+        assert_eq!(Camera::upright("c", Vec3::X, Vec3::ZERO, 45.0, 1.0).unwrap().up, Vec3::Y);
+    }
+}

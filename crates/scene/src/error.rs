@@ -1,0 +1,81 @@
+//! What can go wrong, in one line each: which file, which line, what was found, what was expected.
+use std::io;
+use std::path::PathBuf;
+
+/// Why a scene could not be loaded or a camera not be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The file is missing or cannot be read.
+    #[error("{}: cannot be read: {source}; expected an .obj file", .path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The path names a directory.
+    #[error("{}: found a directory, expected an .obj file", .path.display())]
+    Directory {
+        /// The directory.
+        path: PathBuf,
+    },
+    /// No reader for the file's extension.
+    #[error("{}: found a file of unknown format, expected an .obj file", .path.display())]
+    UnknownFormat {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file's content is wrong.
+    #[error("{}: {}found {found}, expected {expected}", .path.display(), line_prefix(.line))]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// Line counted from 1; none when the whole file is meant.
+        line: Option<u32>,
+        /// What stands there.
+        found: String,
+        /// What should stand there.
+        expected: String,
+    },
+    /// A camera that sees nothing.
+    #[error("camera: found {found}, expected {expected}")]
+    Camera {
+        /// The offending values.
+        found: String,
+        /// What a camera needs.
+        expected: &'static str,
+    },
+    /// No camera of that name.
+    #[error("camera: found the name {found:?}, expected {expected}")]
+    UnknownCamera {
+        /// The name asked for.
+        found: String,
+        /// The names there are.
+        expected: String,
+    },
+}
+
+fn line_prefix(line: &Option<u32>) -> String {
+    line.map_or_else(String::new, |line| format!("line {line}: "))
+}
+
+/// An error in a file's content before the file's name is known.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Fault {
+    pub line: Option<u32>,
+    pub found: String,
+    pub expected: String,
+}
+
+impl Fault {
+    /// A fault in one line, counted from 1.
+    pub fn at(line: u32, found: impl Into<String>, expected: impl Into<String>) -> Self {
+        Self { line: Some(line), found: found.into(), expected: expected.into() }
+    }
+
+    /// A fault of the file as a whole.
+    pub fn whole(found: impl Into<String>, expected: impl Into<String>) -> Self {
+        Self { line: None, found: found.into(), expected: expected.into() }
+    }
+}

@@ -1,0 +1,102 @@
+//! What a file holds once read.
+use std::fmt;
+
+use planish_subdiv::mesh::ControlMesh;
+
+use crate::{Bounds, Camera, Error};
+
+/// A scene: meshes, and the cameras to see them with.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    /// The file's stem.
+    pub name: String,
+    /// The meshes, in file order. One OBJ file is one mesh, whatever its groups, objects and materials.
+    pub meshes: Vec<Mesh>,
+    /// The file's own cameras; an OBJ file has none.
+    pub cameras: Vec<Camera>,
+    /// What is odd in the file but does not keep it from being read, in the order in which it was noticed.
+    pub warnings: Vec<Warning>,
+}
+
+/// A mesh of a scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// The object's name in the file (OBJ: the first `o`), else the file's stem.
+    pub name: String,
+    /// The cage.
+    pub control_mesh: ControlMesh,
+    /// Texture coordinates, when every corner of every face has one.
+    pub uv: Option<FaceVaryingChannel>,
+}
+
+/// Values that belong to the corners of faces: a vertex may have a different one in each of its faces.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FaceVaryingChannel {
+    /// The distinct values.
+    pub values: Vec<[f32; 2]>,
+    /// Into `values`, one a face-vertex, parallel to [`ControlMesh::face_vertices`].
+    pub indices: Vec<u32>,
+}
+
+/// Something odd in a file that did not keep it from being read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// Line counted from 1; none when the whole file is meant.
+    pub line: Option<u32>,
+    /// What was found, and what was done about it.
+    pub text: String,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.line {
+            Some(line) => write!(formatter, "line {line}: {}", self.text),
+            None => formatter.write_str(&self.text),
+        }
+    }
+}
+
+impl Scene {
+    /// The box around all control points of all cages, those that no face uses included; none when there are none.
+    pub fn bounds(&self) -> Option<Bounds> {
+        Bounds::of(self.meshes.iter().flat_map(|mesh| mesh.control_mesh.positions.iter().copied()))
+    }
+
+    /// The camera called `name`; without a name the scene's first camera, else the default view.
+    ///
+    /// # Errors
+    /// When the scene has no camera of that name, or the default view does not exist ([`Camera::default_view`]).
+    pub fn camera(&self, name: Option<&str>) -> Result<Camera, Error> {
+        match name {
+            Some(name) => self
+                .cameras
+                .iter()
+                .find(|camera| camera.name == name)
+                .cloned()
+                .ok_or_else(|| Error::UnknownCamera { found: name.to_owned(), expected: self.camera_names() }),
+            None => match self.cameras.first() {
+                Some(camera) => Ok(camera.clone()),
+                None => self.default_view(),
+            },
+        }
+    }
+
+    /// The default view of the whole scene.
+    ///
+    /// # Errors
+    /// When there are no points, or all are one point.
+    pub fn default_view(&self) -> Result<Camera, Error> {
+        match self.bounds() {
+            Some(bounds) => Camera::default_view(&bounds),
+            None => Err(Error::Camera { found: "a scene without points".to_owned(), expected: "something to look at" }),
+        }
+    }
+
+    fn camera_names(&self) -> String {
+        if self.cameras.is_empty() {
+            return "no name: the scene has no cameras".to_owned();
+        }
+        let names: Vec<String> = self.cameras.iter().map(|camera| format!("{:?}", camera.name)).collect();
+        format!("one of {}", names.join(", "))
+    }
+}

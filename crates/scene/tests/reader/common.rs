@@ -1,0 +1,41 @@
+//! What the reader's tests share: small files and short ways to read them.
+use planish_scene::{Error, LoadOptions, Mesh, Scene, read_obj};
+use planish_subdiv::mesh::ControlMesh;
+
+/// A cube; faces 0 to 5, vertices 0 to 7.
+pub const CUBE: &str = "\
+v -1 -1 1\nv 1 -1 1\nv -1 1 1\nv 1 1 1\nv -1 1 -1\nv 1 1 -1\nv -1 -1 -1\nv 1 -1 -1
+f 1 2 4 3\nf 3 4 6 5\nf 5 6 8 7\nf 7 8 2 1\nf 2 8 6 4\nf 7 1 3 5\n";
+
+pub fn read(text: impl AsRef<[u8]>) -> Result<Scene, Error> {
+    read_obj("folder/name.obj", text.as_ref(), &LoadOptions::default())
+}
+
+pub fn repair(text: &str) -> Scene {
+    read_obj("name.obj", text.as_bytes(), &LoadOptions { repair: true }).unwrap()
+}
+
+/// The one mesh of a file that must be read without a warning.
+pub fn mesh(text: impl AsRef<[u8]>) -> Mesh {
+    let mut scene = read(text).unwrap();
+    assert_eq!(scene.warnings, []);
+    assert_eq!(scene.meshes.len(), 1);
+    scene.meshes.remove(0)
+}
+
+/// The cube with further lines, from line 15 on.
+pub fn cube_with(lines: &str) -> Result<Scene, Error> {
+    read(format!("{CUBE}{lines}"))
+}
+
+/// The cage of the cube with further lines, which must not cause a warning.
+pub fn tagged(lines: &str) -> ControlMesh {
+    mesh(format!("{CUBE}{lines}")).control_mesh
+}
+
+/// Asserts that a text is refused with exactly this message after the file's name.
+pub fn assert_refused(text: impl AsRef<[u8]>, message: &str) {
+    let error = read(text.as_ref()).expect_err("the file should be refused");
+    assert_eq!(error.to_string(), format!("folder/name.obj: {message}"));
+    assert!(!error.to_string().contains('\n'));
+}
