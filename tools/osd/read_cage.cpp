@@ -173,7 +173,7 @@ Cage read_cage(const std::string& path, const CageOptions& options) {
     if (!in)
         fail("cannot read " + path);
     Cage cage;
-    cage.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    cage.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
     choose_scheme(cage, path, options.scheme);
 
     std::string line, key;

@@ -30,7 +30,6 @@ impl FrameConstants {
             ray_dx: dx.to_array(),
             ray_dy: dy.to_array(),
             factors: *factors,
-            ..FrameData::default()
         };
         Ok(self.buffer.write(0, &[data])?)
     }

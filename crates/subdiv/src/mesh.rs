@@ -49,8 +49,8 @@ pub enum TriangleSubdivision {
 pub enum FaceVaryingInterpolation {
     None,
     CornersOnly,
-    CornersPlus1,
     #[default]
+    CornersPlus1,
     CornersPlus2,
     Boundaries,
     All,

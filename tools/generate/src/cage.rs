@@ -1,5 +1,5 @@
 //! A mesh under construction, and its OBJ text.
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 
 use glam::{DMat3, DVec3};
@@ -93,7 +93,25 @@ impl Cage {
         for tag in &self.tags {
             writeln!(text, "{tag}").expect("writing to a string cannot fail");
         }
+        // Readers differ in their default.
+        if self.has_boundary() && !self.tags.iter().any(|tag| tag.contains("interpolateboundary")) {
+            text.push_str("t interpolateboundary 1/0/0 1\n");
+        }
         text
+    }
+
+    /// Whether an edge has one face only.
+    fn has_boundary(&self) -> bool {
+        let mut open = HashSet::new();
+        for face in &self.faces {
+            for (i, &a) in face.iter().enumerate() {
+                let b = face[(i + 1) % face.len()];
+                if !open.remove(&(b, a)) {
+                    open.insert((a, b));
+                }
+            }
+        }
+        !open.is_empty()
     }
 }
 

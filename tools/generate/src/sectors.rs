@@ -19,7 +19,11 @@ pub fn fan(face_count: u32) -> Cage {
 }
 
 /// Sectors of [`RINGS`] x [`RINGS`] quads around a vertex; ring r of a sector has 2r edges.
+///
+/// A sector's diagonal bulges by the tangent of a quarter of its angle, as a square's does: without it the edges at a
+/// corner of a narrow sector lie on one line, and the surface has no well-defined normal there.
 fn sectors(count: u32, angle: f64, closed: bool) -> Cage {
+    let bulge = (angle / f64::from(count) / 4.0).tan();
     let mut cage = Cage::default();
     let center = cage.vertex(dome(0.0, 0.0));
     let mut rings = vec![vec![center; count as usize + 1]];
@@ -27,7 +31,11 @@ fn sectors(count: u32, angle: f64, closed: bool) -> Cage {
         let edge_count = 2 * ring * count;
         let vertex_count = if closed { edge_count } else { edge_count + 1 };
         let mut vertices: Vec<u32> = (0..vertex_count)
-            .map(|i| cage.vertex(dome(f64::from(ring), f64::from(i) * angle / f64::from(edge_count))))
+            .map(|i| {
+                let inward = ring - (i % (2 * ring)).abs_diff(ring);
+                let radius = f64::from(ring) + bulge * f64::from(inward);
+                cage.vertex(dome(radius, f64::from(i) * angle / f64::from(edge_count)))
+            })
             .collect();
         if closed {
             vertices.push(vertices[0]);
