@@ -10,7 +10,7 @@ layout(location = 0) out vec3 control_point[];
 layout(location = 1) patch out vec4 low_factors;  // spaced factor of each edge, or of the half with the lower u or v
 layout(location = 2) patch out vec4 high_factors; // of the other half where the neighbour was split, else 0
 layout(location = 3) patch out float inner_factor;
-layout(location = 4) patch out uint index_of_patch;
+layout(location = 4) patch out uvec4 patch_words; // its PatchInfo, and its number
 
 vec3 point(uint patch_place, uint i)
 {
@@ -54,7 +54,7 @@ void main()
     if (gl_InvocationID != 0) {
         return;
     }
-    index_of_patch = patch_place;
+    patch_words = uvec4(info.ptex_face, info.corner, info.flags, push.first_patch_id + patch_place);
     uint level = patch_level(info);
     float factor = spaced_factor(push.frame.v.factors[level]);
     float finer = spaced_factor(push.frame.v.factors[level + 1]);

@@ -12,7 +12,7 @@ layout(location = 0) in vec3 control_point[];
 layout(location = 1) patch in vec4 low_factors;
 layout(location = 2) patch in vec4 high_factors;
 layout(location = 3) patch in float inner_factor;
-layout(location = 4) patch in uint index_of_patch;
+layout(location = 4) patch in uvec4 patch_words;
 
 Parameter parameter(float x, float low, float high)
 {
@@ -66,6 +66,6 @@ void main()
     precise vec3 along_u = weigh(column[0], column[1], column[2], column[3], du);
     precise vec3 along_v = weigh(slope[0], slope[1], slope[2], slope[3], nu);
     vec3 normal = unit(precise_cross(along_u, along_v));
-    put_surface_point(position, normal, vec2(u.t, v.t), push.patches.v[index_of_patch].info, index_of_patch,
+    put_surface_point(position, normal, vec2(u.t, v.t), PatchInfo(patch_words.x, patch_words.y, patch_words.z), patch_words.w,
                       TRANSITION ? KIND_TRANSITION : KIND_REGULAR);
 }

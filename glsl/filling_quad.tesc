@@ -17,26 +17,25 @@ layout(vertices = POINT_COUNT) out;
 layout(location = 0) in uint patch_index[];
 layout(location = 0) out vec3 limit_position[];
 layout(location = 1) out vec3 limit_normal[];
-layout(location = 2) patch out uint index_of_patch;
+layout(location = 2) patch out uvec4 patch_words; // its PatchInfo, and its number
 
 void main()
 {
     uint quad = patch_index[0];
     uint i = gl_InvocationID;
-    uint place;
 #if defined(MIDPOINTS)
-    if (i >= 4) {
-        place = push.midpoints.v[5 * quad + i - 4];
-    } else
+    FillingQuadsMidpoints quads = FillingQuadsMidpoints(push.patches);
+    uint place = i < 4 ? quads.v[quad].corners[i] : quads.v[quad].midpoints[i - 4];
+#else
+    FillingQuads quads = FillingQuads(push.patches);
+    uint place = quads.v[quad].corners[i];
 #endif
-    {
-        place = push.quads.v[quad].corners[i];
-    }
-    LimitPoint limit = push.limits.v[place];
+    LimitPoint limit = LimitPoints(push.points).v[place];
     limit_position[gl_InvocationID] = limit.position;
     limit_normal[gl_InvocationID] = limit.normal;
     if (i == 0) {
-        index_of_patch = quad;
+        PatchInfo info = quads.v[quad].info;
+        patch_words = uvec4(info.ptex_face, info.corner, info.flags, push.first_patch_id + quad);
         gl_TessLevelOuter = float[4](SEGMENTS, SEGMENTS, SEGMENTS, SEGMENTS);
         gl_TessLevelInner = float[2](SEGMENTS, SEGMENTS);
     }

@@ -20,7 +20,7 @@ layout(location = 3) out uvec4 out_ids;            // face, patch | level << 28,
 
 void main()
 {
-    vec3 direction = push.frame.v.ray_corner + gl_FragCoord.x * push.frame.v.ray_dx + gl_FragCoord.y * push.frame.v.ray_dy;
+    vec3 direction = view_ray(gl_FragCoord.xy);
     vec3 to_eye = direction * -inversesqrt(dot(direction, direction));
     // A point without a tangent plane has the normal 0; the bound keeps its pixels finite.
     vec3 normal = in_normal * inversesqrt(max(dot(in_normal, in_normal), 1e-20));

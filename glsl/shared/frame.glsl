@@ -7,24 +7,31 @@
 const uint FACTOR_COUNT = 17;
 
 struct FrameData {
-    mat4 view_projection; // world to clip space
     mat4 world_to_camera; // right-handed, looking down -z
-    vec3 ray_corner;      // world-space direction through the image's upper left corner
-    vec3 ray_dx;          // its change from one pixel to the next
-    vec3 ray_dy;          // and from one line to the next
     float factors[FACTOR_COUNT]; // tess factor of each level: max(1, t / 2^k)
 };
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Frame { FrameData v; };
 
+// Exactly the 128 bytes that every device has. What every vertex and every pixel reads is here and not behind an address:
+// hardware keeps it in scalar registers, and a software driver would load it lane by lane.
 layout(push_constant, scalar) uniform DrawPush {
+    mat4 view_projection; // world to clip space
+    Indices list;         // patches to draw, as indices into the table
+    Points points;        // control points; limit points for filling quads
+    RegularPatches patches; // table of patches; filling quads for their pass
     Frame frame;
-    Indices list; // patches to draw, as indices into the table
-    Points points;
-    RegularPatches patches;
-    FillingQuads quads;
-    Indices midpoints; // five limit points a filling quad
-    LimitPoints limits;
-    uint first_patch_id; // number of the table's first patch among all patches of the mesh
+    vec3 ray_dx;          // change of the view ray, at depth 1, from one pixel to the next, in world space
+    vec3 ray_dy;          // and from one line to the next
+    uint image_size;      // width | height << 16, in pixels
+    uint first_patch_id;  // number of the table's first patch among all patches of the mesh
 } push;
+
+// World-space direction from the eye through a point of the image, in pixels; not of unit length.
+vec3 view_ray(vec2 pixel)
+{
+    vec2 middle = 0.5 * vec2(push.image_size & 0xffffu, push.image_size >> 16);
+    vec3 across = cross(push.ray_dx, push.ray_dy);
+    return across * inversesqrt(dot(across, across)) + (pixel.x - middle.x) * push.ray_dx + (pixel.y - middle.y) * push.ray_dy;
+}
 #endif

@@ -29,7 +29,7 @@ layout(location = 4) out flat float out_factor;
 void put_surface_point(vec3 position, vec3 normal, vec2 uv, PatchInfo info, uint patch_id, uint kind)
 {
     out_normal = normal;
-    gl_Position = push.frame.v.view_projection * vec4(position, 1.0);
+    gl_Position = push.view_projection * vec4(position, 1.0);
 #if defined(DUMP)
     out_position = position;
     out_uv = ptex_uv(info, uv);

@@ -30,6 +30,13 @@ struct FillingQuad {
     PatchInfo info;
 };
 
+// The same with those at the middles of its edges and at its centre.
+struct FillingQuadMidpoints {
+    uint corners[4];
+    uint midpoints[5];
+    PatchInfo info;
+};
+
 struct LimitPoint {
     vec3 position;
     vec3 normal;
@@ -43,6 +50,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Wei
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer LimitWeights { vec3 v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RegularPatches { RegularPatch v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FillingQuads { FillingQuad v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FillingQuadsMidpoints { FillingQuadMidpoints v[]; };
 
 uint patch_depth(PatchInfo info) { return bitfieldExtract(info.flags, 0, 5); }
 uint patch_level(PatchInfo info) { return bitfieldExtract(info.flags, 5, 5); }

@@ -96,8 +96,7 @@ impl Session {
         let start = Instant::now();
         let stages = PointStages::new(device)?;
         let pipelines_ms = milliseconds(start);
-        let constants = FrameConstants::new(device)?;
-        constants.set(&plan.frame_camera, &factors)?;
+        let constants = FrameConstants::new(device, &plan.frame_camera, &factors)?;
         let counts = surface.tables().total_counts();
         console.explain(format_args!(
             "tess factor {}, irregularities isolated to level {}: {} regular, {} transition and {} filling patches",
@@ -134,10 +133,20 @@ impl Session {
         let passes = DrawPasses::new(&self.device, &options)?;
         self.pipelines_ms += milliseconds(start);
         let targets = Targets::new(&self.device, self.camera.size, options.needs_layers())?;
+        let frame = self.record_frame(&passes, &targets, &self.camera)?;
+        Ok(Images { targets, passes, frame })
+    }
+
+    /// Records a frame of its own for a camera that is the session's but for a fraction of a pixel.
+    pub fn record_sample(&self, images: &Images, camera: &FrameCamera) -> Result<Recorded> {
+        self.record_frame(&images.passes, &images.targets, camera)
+    }
+
+    fn record_frame(&self, passes: &DrawPasses, targets: &Targets, camera: &FrameCamera) -> Result<Recorded> {
         let mut encoder = Encoder::new(&self.device, "frame")?;
         self.stages.record(&mut encoder, &self.surface);
-        passes.record(&mut encoder, &self.surface, &self.constants, &targets);
-        Ok(Images { targets, frame: encoder.finish()? })
+        passes.record(&mut encoder, &self.surface, &self.constants, camera, targets);
+        Ok(encoder.finish()?)
     }
 
     /// Uploads the cage and runs what was recorded; the report and the wall time from upload to fence in milliseconds.
@@ -159,6 +168,7 @@ impl Session {
 pub struct Images {
     /// The images.
     pub targets: Targets,
+    passes: DrawPasses,
     /// Points and draws; can run any number of times.
     pub frame: Recorded,
 }

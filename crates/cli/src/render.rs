@@ -81,7 +81,6 @@ fn timed_frames(
     frames: &mut Vec<FrameStats>,
 ) -> Result<()> {
     let positions = &cage.mesh().positions;
-    session.constants.set(&session.camera, &session.factors)?;
     if arguments.frames.repeat.is_some() && is_first {
         session.run(positions, &images.frame)?;
     }
@@ -116,8 +115,8 @@ fn film(
     } else {
         for (done, offset) in (0..).zip(sample_offsets(arguments.samples)) {
             console.progress(format_args!("frame {frame}: sample {done} of {}", arguments.samples));
-            session.constants.set(&session.camera.jittered(offset), &session.factors)?;
-            device.submit_and_wait(&images.frame)?;
+            let sample = session.record_sample(images, &session.camera.jittered(offset))?;
+            device.submit_and_wait(&sample)?;
             sum.add(device)?;
         }
     }

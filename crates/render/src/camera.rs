@@ -26,17 +26,14 @@ impl FrameCamera {
         Self { projection: Mat4::from_translation(shift.extend(0.0)) * self.projection, ..*self }
     }
 
-    /// World-space directions: through the image's upper left corner, and their change per pixel to the right and down.
-    pub fn rays(&self) -> [Vec3; 3] {
-        let p = &self.projection;
-        // At camera depth 1: x_ndc = (p00 x - p20) and likewise y.
-        let through = |x: f32, y: f32| Vec3::new((x + p.z_axis.x) / p.x_axis.x, (y + p.z_axis.y) / p.y_axis.y, -1.0);
-        let to_world = self.world_to_camera.inverse();
+    /// How the view ray at depth 1 changes from one pixel to the next to the right and down, in world space. Their cross
+    /// product points along the view.
+    pub fn pixel_steps(&self) -> [Vec3; 2] {
         let [width, height] = self.size.map(|s| s as f32);
-        let corner = through(-1.0, 1.0);
-        let dx = (through(1.0, 1.0) - corner) / width;
-        let dy = (through(-1.0, -1.0) - corner) / height;
-        [corner, dx, dy].map(|v| to_world.transform_vector3(v))
+        let to_world = self.world_to_camera.inverse();
+        let dx = Vec3::new(2.0 / (width * self.projection.x_axis.x), 0.0, 0.0);
+        let dy = Vec3::new(0.0, -2.0 / (height * self.projection.y_axis.y), 0.0);
+        [dx, dy].map(|v| to_world.transform_vector3(v))
     }
 
     /// Diameter in pixels of a sphere as seen by the camera, by the depth of its centre; 0 when it lies behind the
@@ -67,13 +64,23 @@ mod tests {
 
     #[test]
     fn a_ray_meets_the_pixel_that_its_points_project_to() {
-        let camera = camera().jittered(Vec2::new(0.3, -0.2));
-        let [corner, dx, dy] = camera.rays();
+        let camera = camera();
+        let [dx, dy] = camera.pixel_steps();
         let eye = camera.world_to_camera.inverse().w_axis.truncate();
-        let point = eye + 7.0 * (corner + 120.5 * dx + 33.25 * dy);
+        let point = eye + 7.0 * (dx.cross(dy).normalize() + (120.5 - 150.0) * dx + (33.25 - 100.0) * dy);
         let clip = camera.view_projection() * point.extend(1.0);
         let pixel = (clip.truncate() / clip.w).truncate() * Vec2::new(0.5, -0.5) + 0.5;
         assert!((pixel * Vec2::new(300.0, 200.0) - Vec2::new(120.5, 33.25)).length() < 1e-3);
+    }
+
+    #[test]
+    fn jitter_moves_the_image_right_and_down() {
+        let project = |camera: FrameCamera| {
+            let clip = camera.view_projection() * Vec4::new(0.2, 0.1, 0.3, 1.0);
+            ((clip.truncate() / clip.w).truncate() * Vec2::new(0.5, -0.5) + 0.5) * Vec2::new(300.0, 200.0)
+        };
+        let moved = project(camera().jittered(Vec2::new(0.3, -0.2))) - project(camera());
+        assert!((moved - Vec2::new(0.3, -0.2)).length() < 1e-3);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use planish_gpu::{Device, Draw, DrawArguments, Encoder, Feature, GraphicsPipeline};
 
+use crate::camera::FrameCamera;
 use crate::error::Error;
 use crate::frame::FrameConstants;
 use crate::lists::PatchKind;
@@ -58,14 +59,21 @@ impl DrawPasses {
     }
 
     /// Records the passes, drawn indirectly from the surface's lists; the points must have been made. Takes the time
-    /// `draw`, and the statistics `draw`.
-    pub fn record(&self, encoder: &mut Encoder, surface: &Surface, frame: &FrameConstants, targets: &Targets) {
+    /// `draw`, and the statistics `draw`. The camera is recorded with the draws.
+    pub fn record(
+        &self,
+        encoder: &mut Encoder,
+        surface: &Surface,
+        frame: &FrameConstants,
+        camera: &FrameCamera,
+        targets: &Targets,
+    ) {
         encoder.keep(frame.buffer());
         targets.render(|targets| encoder.begin_rendering(targets));
         encoder.begin_statistics("draw");
-        record_lists(encoder, &self.fill, surface, frame);
+        record_lists(encoder, &self.fill, surface, frame, camera);
         encoder.end_statistics();
-        record_lists(encoder, &self.wire, surface, frame);
+        record_lists(encoder, &self.wire, surface, frame, camera);
         encoder.end_rendering();
         encoder.timestamp("draw");
     }
@@ -76,9 +84,10 @@ fn record_lists(
     pipelines: &[(PatchKind, GraphicsPipeline)],
     surface: &Surface,
     frame: &FrameConstants,
+    camera: &FrameCamera,
 ) {
     for (kind, pipeline) in pipelines {
-        let push = frame.push(surface, surface.lists.ranges[*kind as usize].start);
+        let push = frame.push(surface, *kind, surface.lists.ranges[*kind as usize].start, camera);
         let stride = size_of::<DrawArguments>() as u32;
         let draws = surface.draw_ranges[*kind as usize].clone();
         let offset = u64::from(draws.start) * u64::from(stride);

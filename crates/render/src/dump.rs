@@ -3,11 +3,13 @@
 //! Lists are drawn in parts whose triangles fit a buffer of fixed size, so a dump of any size needs no more memory.
 
 use bytemuck::{Pod, Zeroable};
+use glam::Mat4;
 use planish_gpu::{
     Buffer, BufferDesc, BufferKind, Device, Draw, DrawArguments, Encoder, Feature, Feedback, FeedbackList,
     GraphicsPipeline,
 };
 
+use crate::camera::FrameCamera;
 use crate::density::FACTOR_COUNT;
 use crate::error::Error;
 use crate::frame::FrameConstants;
@@ -21,6 +23,10 @@ use crate::tessellation::{filling_triangle_count, patch_triangle_count};
 const CAPTURE_BYTES: u64 = 64 << 20;
 /// Vertices that fit.
 const CAPTURE_VERTICES: u64 = CAPTURE_BYTES / size_of::<CapturedVertex>() as u64;
+
+/// Captured points are in world space: nothing is projected that anybody sees.
+const NO_CAMERA: FrameCamera =
+    FrameCamera { world_to_camera: Mat4::IDENTITY, projection: Mat4::IDENTITY, size: [1, 1] };
 
 /// A captured vertex: the layout that `glsl/shared/surface.glsl` gives the DUMP outputs. Three make a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -85,12 +91,12 @@ impl DumpPasses {
         factors: &[f32; FACTOR_COUNT],
         mut sink: impl FnMut(&[CapturedVertex]) -> Result<(), E>,
     ) -> Result<(), E> {
-        for (kind, pipeline) in &self.pipelines {
-            let range = surface.lists.ranges[*kind as usize].clone();
+        for pass in &self.pipelines {
+            let range = surface.lists.ranges[pass.0 as usize].clone();
             let mut first = range.start;
             while first < range.end {
-                let (count, triangles) = self.part(surface, *kind, first, range.end, factors);
-                let vertices = self.capture_part(device, surface, frame, pipeline, first, count, triangles)?;
+                let (count, triangles) = self.part(surface, pass.0, first, range.end, factors);
+                let vertices = self.capture_part(device, surface, frame, pass, first, count, triangles)?;
                 sink(&vertices)?;
                 first += count;
             }
@@ -128,14 +134,14 @@ impl DumpPasses {
         device: &Device,
         surface: &Surface,
         frame: &FrameConstants,
-        pipeline: &GraphicsPipeline,
+        (kind, pipeline): &(PatchKind, GraphicsPipeline),
         first: u32,
         count: u32,
         triangles: u64,
     ) -> Result<Vec<CapturedVertex>, Error> {
         let arguments = draw_arguments(0, count, self.method, device.is_software());
         self.arguments.write(0, &[arguments])?;
-        let push = frame.push(surface, first);
+        let push = frame.push(surface, *kind, first, &NO_CAMERA);
         let mut encoder = Encoder::new(device, "dump")?;
         let feedback = Feedback { name: "dump", targets: &[&self.capture], counters: &self.counter };
         let stride = size_of::<DrawArguments>() as u32;

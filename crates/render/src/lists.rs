@@ -76,7 +76,7 @@ impl Lists {
 
 /// Vertices that a draw should generate on a software driver: on Mesa 22.3's, larger batches cost more by their square,
 /// smaller ones by their number (`planish bench --tess`).
-const BATCH_VERTICES: u32 = 1024;
+const BATCH_VERTICES: u32 = 512;
 
 /// What the shape of draws depends on.
 #[derive(Clone, Copy, Debug)]
@@ -158,7 +158,7 @@ mod tests {
         }
         assert_eq!(next, 1000);
         assert!(draws[..10].iter().all(|draw| draw.vertex_count == 1));
-        assert_eq!(draws[10].vertex_count, 1024 / 25);
+        assert_eq!(draws[10].vertex_count, BATCH_VERTICES / 25);
     }
 
     #[test]

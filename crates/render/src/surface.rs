@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use planish_gpu::{Buffer, Device, Encoder};
 use planish_subdiv::ControlMesh;
-use planish_subdiv::patch::PatchInfo;
+use planish_subdiv::patch::{FillingQuad, PatchInfo};
 use planish_subdiv::refine::{RefineOptions, Refinement};
 use planish_subdiv::tables::Tables;
 
@@ -87,7 +87,6 @@ pub(crate) struct Buffers {
     pub limit_weights: Buffer,
     pub patches: Buffer,
     pub quads: Buffer,
-    pub midpoints: Buffer,
     pub list: Buffer,
     pub draws: Buffer,
 }
@@ -133,8 +132,7 @@ impl Surface {
             limit_indices: table(device, "limit indices", &limits.indices)?,
             limit_weights: table(device, "limit weights", &limits.weights)?,
             patches: table(device, "patches", &patches(&tables))?,
-            quads: table(device, "filling quads", &quads(&tables))?,
-            midpoints: table(device, "filling midpoints", &tables.filling_midpoints)?,
+            quads: filling_quads(device, &tables)?,
             list: table(device, "render lists", &lists.entries)?,
             draws: table(device, "draws", &draws)?,
         };
@@ -217,7 +215,7 @@ impl PointStages {
 }
 
 impl Buffers {
-    fn all(&self) -> [&Buffer; 14] {
+    fn all(&self) -> [&Buffer; 13] {
         [
             &self.cage,
             &self.points,
@@ -230,7 +228,6 @@ impl Buffers {
             &self.limit_weights,
             &self.patches,
             &self.quads,
-            &self.midpoints,
             &self.list,
             &self.draws,
         ]
@@ -267,8 +264,15 @@ fn patches(tables: &Tables) -> Vec<planish_shaders::RegularPatch> {
     tables.patches.iter().map(|p| planish_shaders::RegularPatch { points: p.points, info: info(&p.info) }).collect()
 }
 
-fn quads(tables: &Tables) -> Vec<planish_shaders::FillingQuad> {
-    tables.filling.iter().map(|q| planish_shaders::FillingQuad { corners: q.corners, info: info(&q.info) }).collect()
+fn filling_quads(device: &Device, tables: &Tables) -> Result<Buffer, Error> {
+    if tables.filling_midpoints.is_empty() {
+        let quad = |q: &FillingQuad| planish_shaders::FillingQuad { corners: q.corners, info: info(&q.info) };
+        return table(device, "filling quads", &tables.filling.iter().map(quad).collect::<Vec<_>>());
+    }
+    let quads = tables.filling.iter().zip(&tables.filling_midpoints).map(|(quad, &midpoints)| {
+        planish_shaders::FillingQuadMidpoints { corners: quad.corners, midpoints, info: info(&quad.info) }
+    });
+    table(device, "filling quads with midpoints", &quads.collect::<Vec<_>>())
 }
 
 fn milliseconds(start: Instant) -> f64 {

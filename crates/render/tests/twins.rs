@@ -1,7 +1,9 @@
 //! Compute kernels against their CPU twins, buffer by buffer, on the real device with validation on.
 
 use planish_gpu::{Device, DeviceOptions, Encoder};
-use planish_render::{PointStages, Spacing, Surface, SurfaceDesc, SurfaceMethod, density, limit, preprocess, subdivide};
+use planish_render::{
+    PointStages, Spacing, Surface, SurfaceDesc, SurfaceMethod, density, limit, preprocess, subdivide,
+};
 use planish_subdiv::ControlMesh;
 
 /// An n-gonal prism whose caps are n-gons: n-gons, extraordinary vertices and many levels in few faces.

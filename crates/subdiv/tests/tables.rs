@@ -252,10 +252,10 @@ fn evaluator_reproduces_a_bicubic_sheet() {
     // Face 12 is the middle one, its control points the sheet's inner 4 x 4.
     let (nu, nv) = (cubic_basis(0.3).0, cubic_basis(0.8).0);
     let mut want = [0.0; 3];
-    for j in 0..4 {
-        for i in 0..4 {
+    for (j, wv) in nv.into_iter().enumerate() {
+        for (i, wu) in nu.into_iter().enumerate() {
             let p = mesh.positions[(j + 1) * 6 + i + 1];
-            (0..3).for_each(|c| want[c] += nu[i] * nv[j] * f64::from(p[c]));
+            (0..3).for_each(|c| want[c] += wu * wv * f64::from(p[c]));
         }
     }
     assert!(distance(evaluator.evaluate(12, 0.3, 0.8).unwrap().position, want) < 1e-14);
