@@ -17,10 +17,10 @@ const vec3 TO_RIM = vec3(-0.251, 0.351, -0.902);
 // shows form: three Lambert terms over a sky and a warm floor, one highlight, and the sky's reflection at grazing angles.
 vec3 lit(vec3 normal, vec3 to_eye, vec3 base)
 {
-    vec3 diffuse = mix(vec3(0.09, 0.075, 0.065), vec3(0.26, 0.29, 0.34), 0.5 + 0.5 * normal.y);
-    diffuse += max(dot(normal, TO_KEY), 0.0) * vec3(0.92, 0.86, 0.77);
-    diffuse += max(dot(normal, TO_FILL), 0.0) * vec3(0.15, 0.18, 0.23);
-    diffuse += max(dot(normal, TO_RIM), 0.0) * vec3(0.38, 0.40, 0.46);
+    vec3 diffuse = mix(vec3(0.045, 0.035, 0.03), vec3(0.13, 0.15, 0.19), 0.5 + 0.5 * normal.y);
+    diffuse += max(dot(normal, TO_KEY), 0.0) * vec3(1.12, 1.03, 0.90);
+    diffuse += max(dot(normal, TO_FILL), 0.0) * vec3(0.12, 0.16, 0.24);
+    diffuse += max(dot(normal, TO_RIM), 0.0) * vec3(0.34, 0.38, 0.46);
     float facing = dot(normal, to_eye);
     vec3 mirrored = 2.0 * facing * normal - to_eye;
     float glint = max(dot(mirrored, TO_KEY), 0.0);
@@ -32,10 +32,10 @@ vec3 lit(vec3 normal, vec3 to_eye, vec3 base)
     grazing *= grazing;
     grazing *= grazing;
     float sky = clamp(mirrored.y + 0.35, 0.0, 1.0);
-    return base * diffuse + vec3(0.16 * glint) + grazing * sky * vec3(0.20, 0.24, 0.30);
+    return base * diffuse + vec3(0.22 * glint) + grazing * sky * vec3(0.20, 0.24, 0.30);
 }
 
-vec3 shade(vec3 normal, vec3 to_eye) { return lit(normal, to_eye, vec3(0.58, 0.55, 0.52)); }
+vec3 shade(vec3 normal, vec3 to_eye) { return lit(normal, to_eye, vec3(0.52, 0.47, 0.43)); }
 
 // A colour for a number, neighbours well apart: the golden angle around a circle of hues.
 vec3 hue(float turns)
