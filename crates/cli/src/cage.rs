@@ -12,6 +12,7 @@ use serde::Serialize;
 
 use crate::args::ViewArguments;
 use crate::console::Console;
+use crate::culling::backs_are_hidden;
 
 /// Vertical field of view of a camera given by its eye, in degrees.
 const DEFAULT_FOV: f32 = 45.0;
@@ -78,9 +79,10 @@ impl Cage {
         self.scene.default_view().with_context(|| self.path.display().to_string())
     }
 
-    /// Whether the backs of triangles are never seen from outside.
-    pub fn is_closed(&self) -> bool {
-        self.facts.boundary_edges == 0 && self.mesh().holes.is_empty()
+    /// Whether the backs of triangles are never seen by a camera.
+    pub fn hides_backs(&self, camera: &Camera) -> bool {
+        let is_closed = self.facts.boundary_edges == 0 && self.mesh().holes.is_empty();
+        is_closed && backs_are_hidden(self.mesh(), camera.eye.to_array())
     }
 }
 

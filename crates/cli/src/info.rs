@@ -281,7 +281,7 @@ mod tests {
         mesh.holes = vec![3, 4];
         assert_eq!(
             Features::new(&mesh, true).to_text(),
-            "2 holes, texture coordinates (interpolation: corners plus 2)"
+            "2 holes, texture coordinates (interpolation: corners plus 1)"
         );
     }
 }

@@ -16,6 +16,7 @@ mod args;
 mod bench;
 mod cage;
 mod console;
+mod culling;
 mod devices;
 mod dump;
 mod frames;

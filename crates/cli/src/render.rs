@@ -25,7 +25,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<()> {
     let plan = Plan::new(&cage, &arguments.surface, &arguments.view)?;
     let device = open_device(&arguments.device, console)?;
     let mut session = Session::new(&device, &cage, &plan, console)?;
-    let cull_back = cage.is_closed() && !arguments.frames.no_cull;
+    let cull_back = cage.hides_backs(&plan.camera) && !arguments.frames.no_cull;
     let images = session.images(arguments.shown.into(), !aovs.is_empty(), cull_back)?;
     let mut sum = ColorSum::new(&device, &images.targets)?;
 

@@ -45,7 +45,7 @@ pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) ->
         tess_factor,
     };
     let mut session = Session::new(device, cage, &plan, bench.console)?;
-    let images = session.images(View::Shaded, false, cage.is_closed() && !arguments.no_cull)?;
+    let images = session.images(View::Shaded, false, cage.hides_backs(&plan.camera) && !arguments.no_cull)?;
     let mut cage_motion = CageMotion::new(cage);
     session.run(cage_motion.positions(0), &images.frame)?;
     let mut frames = Vec::new();
