@@ -65,7 +65,7 @@ void main()
     precise vec3 position = weigh(column[0], column[1], column[2], column[3], nu) / 36.0;
     precise vec3 along_u = weigh(column[0], column[1], column[2], column[3], du);
     precise vec3 along_v = weigh(slope[0], slope[1], slope[2], slope[3], nu);
-    vec3 normal = unit(precise_cross(along_u, along_v));
+    vec3 normal = unit_normal(along_u, along_v);
     put_surface_point(position, normal, vec2(u.t, v.t), PatchInfo(patch_words.x, patch_words.y, patch_words.z), patch_words.w,
                       TRANSITION ? KIND_TRANSITION : KIND_REGULAR);
 }

@@ -2,6 +2,7 @@
 // One thread makes one limit point: position and normal by limit masks (FAS section 4.1, Halstead et al. 1993).
 #extension GL_GOOGLE_include_directive : require
 #include "shared/tables.glsl"
+#include "shared/bspline.glsl"
 layout(local_size_x = 64) in;
 #include "shared/dispatch.glsl"
 
@@ -32,16 +33,7 @@ void main()
         tangent0 = tangent0 + weight.y * offset;
         tangent1 = tangent1 + weight.z * offset;
     }
-    precise vec3 normal = vec3(tangent0.y * tangent1.z - tangent0.z * tangent1.y,
-                               tangent0.z * tangent1.x - tangent0.x * tangent1.z,
-                               tangent0.x * tangent1.y - tangent0.y * tangent1.x);
-    // Scaled before it is squared: the squares of tiny or huge cages leave the range of f32.
-    precise float largest = max(max(abs(normal.x), abs(normal.y)), abs(normal.z));
-    if (largest > 0.0) {
-        normal = normal / largest;
-        precise float size = sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
-        normal = normal / size;
-    }
+    vec3 normal = unit_normal(tangent0, tangent1);
     position = origin + position;
     LimitPoint result;
     result.position = position;

@@ -1,6 +1,6 @@
 #version 460
-// Passes on which patch of a table is drawn. The place in the list is the vertex plus the instance: hardware draws
-// { N vertices, 1 instance }, a software driver { 1 vertex, N instances }, since its cost for one instance is quadratic.
+// Passes on which patch of a table is drawn. The place in the list is the vertex plus the instance, so a list can be drawn in
+// any shape: whole on hardware, in small batches on a software driver, whose cost for one instance is quadratic.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/frame.glsl"
 

@@ -40,16 +40,20 @@ precise vec3 precise_cross(vec3 a, vec3 b)
     return result;
 }
 
-// A unit vector, or 0 for a vector of length 0. Scaled first: squares of tiny or huge derivatives leave f32's range.
-precise vec3 unit(vec3 a)
+// A vector scaled to a largest component of 1, or 0: products of huge or tiny ones leave f32's range.
+precise vec3 scaled(vec3 a)
 {
-    precise float largest = max(max(abs(a.x), abs(a.y)), abs(a.z));
-    if (largest == 0.0) {
-        return vec3(0.0);
-    }
-    precise vec3 scaled = a / largest;
-    precise float size = sqrt((scaled.x * scaled.x + scaled.y * scaled.y) + scaled.z * scaled.z);
-    precise vec3 result = scaled / size;
+    precise float largest = max(max(max(abs(a.x), abs(a.y)), abs(a.z)), 1.17549435e-38);
+    precise vec3 result = a / largest;
+    return result;
+}
+
+// A unit vector along a x b, or 0 where they span no plane.
+precise vec3 unit_normal(vec3 a, vec3 b)
+{
+    precise vec3 normal = scaled(precise_cross(scaled(a), scaled(b)));
+    precise float square = (normal.x * normal.x + normal.y * normal.y) + normal.z * normal.z;
+    precise vec3 result = normal / sqrt(max(square, 1.17549435e-38));
     return result;
 }
 #endif

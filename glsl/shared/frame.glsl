@@ -8,7 +8,7 @@ const uint FACTOR_COUNT = 17;
 
 struct FrameData {
     mat4 world_to_camera; // right-handed, looking down -z
-    float factors[FACTOR_COUNT]; // tess factor of each level: max(1, t / 2^k)
+    float factors[FACTOR_COUNT]; // tess factor of each level: max(1, t / 2^k), held where two halves would exceed 64
 };
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Frame { FrameData v; };

@@ -12,7 +12,7 @@ using namespace OpenSubdiv;
 
 const char* const cage_options_manual =
     "  --scheme catmark|loop|bilinear   (default: by the file's name, loop_* and bilinear_*; else catmark)\n"
-    "  --boundary none|edge|edgecorner  overrides the file's tag (without either: edge)\n"
+    "  --boundary none|edge|edgecorner  overrides the file's tag (without either: edgecorner)\n"
     "  --crease uniform|chaikin         overrides the file's tag\n"
     "  --smoothtri                      smooth triangle subdivision\n"
     "  --crease-pairs                   a crease tag of N vertices is N/2 edges (as OpenSubdiv's reader has it),\n"

@@ -200,6 +200,12 @@ pub struct SurfaceArguments {
     /// Trade bitwise equal seams for speed
     #[arg(long)]
     pub no_watertight: bool,
+    /// Scalar map over the mesh's UVs, along the normal
+    #[arg(long, value_name = "FILE")]
+    pub displacement: Option<PathBuf>,
+    /// Factor on the map's values
+    #[arg(long, value_name = "S", requires = "displacement", allow_hyphen_values = true)]
+    pub displacement_scale: Option<f32>,
 }
 
 impl SurfaceArguments {
@@ -212,8 +218,11 @@ impl SurfaceArguments {
         }
     }
 
-    /// Refuses a scheme that does not exist yet.
-    pub fn check_scheme(&self) -> Result<()> {
+    /// Refuses what does not exist yet.
+    pub fn check_available(&self) -> Result<()> {
+        if self.displacement.is_some() {
+            bail!("displacement is not available yet");
+        }
         match self.scheme {
             None | Some(SchemeName::CatmullClark) => Ok(()),
             Some(other) => bail!("scheme {} is not available yet (available: catmull-clark)", name_of(other)),
@@ -366,9 +375,9 @@ mod tests {
     fn methods_and_schemes_to_come_are_refused_when_asked_for() {
         let message = render("--method dfas").surface.method().unwrap_err().to_string();
         assert_eq!(message, "method dfas is not available yet (available: fas, uniform)");
-        let message = render("--scheme loop").surface.check_scheme().unwrap_err().to_string();
+        let message = render("--scheme loop").surface.check_available().unwrap_err().to_string();
         assert_eq!(message, "scheme loop is not available yet (available: catmull-clark)");
-        assert!(render("--scheme catmull-clark").surface.check_scheme().is_ok());
+        assert!(render("--scheme catmull-clark").surface.check_available().is_ok());
     }
 
     #[test]

@@ -23,12 +23,15 @@ const QUEUED_PARTS: usize = 2;
 /// Runs the command.
 pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
     let cage = Cage::load(&arguments.scene.path, arguments.scene.repair, console)?;
+    if cage.has_uv() {
+        console.warn(format_args!("the dump has no s and t: face-varying channels are not evaluated yet"));
+    }
     let range = arguments.frames.range();
     check_placeholder(&arguments.output, range)?;
     check_dump_output(&frame_path(&arguments.output, range.frames().next().unwrap_or_default()))?;
     let stats_output = StatsOutput(arguments.frames.stats.as_ref());
     stats_output.check()?;
-    let plan = Plan::new(&cage, &arguments.surface, &arguments.view)?;
+    let plan = Plan::unseen(&cage, &arguments.surface, &arguments.view)?;
     let device = open_device(&arguments.device, console)?;
     let mut session = Session::new(&device, &cage, &plan, console)?;
     let start = Instant::now();

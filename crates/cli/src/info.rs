@@ -38,10 +38,10 @@ fn surface_desc(arguments: &InfoArguments, cage: &Cage) -> Result<SurfaceDesc> {
     let surface = &arguments.surface;
     match surface.asked_max_level {
         Some(level) if surface.tess.is_none() && surface.edge_pixels.is_none() => {
-            surface.check_scheme()?;
+            surface.check_available()?;
             Ok(SurfaceDesc { method: surface.method()?, spacing: surface.spacing.into(), level })
         }
-        _ => Ok(Plan::new(cage, surface, &arguments.view)?.desc),
+        _ => Ok(Plan::unseen(cage, surface, &arguments.view)?.desc),
     }
 }
 

@@ -3,12 +3,13 @@
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
-use glam::Mat4;
+use glam::{Mat4, Vec3};
 use planish_gpu::{Device, Encoder, Recorded, SubmitReport};
 use planish_render::density::{FACTOR_COUNT, isolation_level, level_factors, tess_factor};
 use planish_render::tessellation::triangle_count;
 use planish_render::{
-    DrawOptions, DrawPasses, FrameCamera, FrameConstants, PointStages, Surface, SurfaceDesc, Targets, View, preprocess,
+    Density, DrawOptions, DrawPasses, FrameCamera, FrameConstants, PointStages, Surface, SurfaceDesc, Targets, View,
+    preprocess,
 };
 use planish_scene::Camera;
 
@@ -29,11 +30,24 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Decides for a cage.
+    /// Decides for a cage that is to be seen.
     pub fn new(cage: &Cage, surface: &SurfaceArguments, view: &ViewArguments) -> Result<Self> {
-        surface.check_scheme()?;
-        let method = surface.method()?;
         let camera = cage.camera(view)?;
+        Self::with_camera(cage, surface, view, camera)
+    }
+
+    /// Decides for a cage that is not drawn: with a given tess factor there need not be a camera that sees it.
+    pub fn unseen(cage: &Cage, surface: &SurfaceArguments, view: &ViewArguments) -> Result<Self> {
+        let camera = match (cage.camera(view), surface.density()) {
+            (Err(_), Density::Tess(_)) => Camera::upright("none", Vec3::Z, Vec3::ZERO, 45.0, 1.0)?,
+            (camera, _) => camera?,
+        };
+        Self::with_camera(cage, surface, view, camera)
+    }
+
+    fn with_camera(cage: &Cage, surface: &SurfaceArguments, view: &ViewArguments, camera: Camera) -> Result<Self> {
+        surface.check_available()?;
+        let method = surface.method()?;
         let frame_camera = frame_camera(&camera, view.size);
         let tess_factor = tess_factor(cage.mesh(), &frame_camera, surface.density())?;
         let level = isolation_level(tess_factor, surface.max_level());
@@ -44,7 +58,7 @@ impl Plan {
 
 /// A scene's camera, for an image of this size.
 pub fn frame_camera(camera: &Camera, size: [u32; 2]) -> FrameCamera {
-    let clip_y_up = Mat4::from_scale(glam::Vec3::new(1.0, -1.0, 1.0));
+    let clip_y_up = Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0));
     FrameCamera {
         world_to_camera: camera.view_matrix(),
         projection: clip_y_up * camera.projection_matrix(aspect(size)),

@@ -133,7 +133,8 @@ impl FrameStats {
     pub fn new(frame: i32, session: &Session, report: &SubmitReport, wall_ms: f64, triangles: Option<u64>) -> Self {
         let tables = session.surface.tables();
         let counts = tables.total_counts();
-        let is_cut_short = session.tess_factor > (tables.last_level as f32).exp2();
+        let is_fas = session.surface.desc().method == SurfaceMethod::Fas;
+        let is_cut_short = is_fas && session.tess_factor > (tables.last_level as f32).exp2();
         let quad = u64::from(counts.filling);
         Self {
             frame,

@@ -1,6 +1,6 @@
 //! The camera of a frame, as matrices.
 
-use glam::{Mat4, Vec2, Vec3, Vec4};
+use glam::{Mat3, Mat4, Vec2, Vec3};
 
 /// A perspective camera and the image it makes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,23 +30,27 @@ impl FrameCamera {
     /// product points along the view.
     pub fn pixel_steps(&self) -> [Vec3; 2] {
         let [width, height] = self.size.map(|s| s as f32);
-        let to_world = self.world_to_camera.inverse();
+        let to_world = Mat3::from_mat4(self.world_to_camera).transpose();
         let dx = Vec3::new(2.0 / (width * self.projection.x_axis.x), 0.0, 0.0);
         let dy = Vec3::new(0.0, -2.0 / (height * self.projection.y_axis.y), 0.0);
-        [dx, dy].map(|v| to_world.transform_vector3(v))
+        [dx, dy].map(|v| to_world * v)
     }
 
     /// Diameter in pixels of a sphere as seen by the camera, by the depth of its centre; 0 when it lies behind the
-    /// camera, infinite when the camera may be inside. Unlike an edge's own length it does not vanish at silhouettes.
-    pub fn projected_diameter(&self, centre: Vec3, radius: f32) -> f32 {
-        let depth = -(self.world_to_camera * Vec4::from((centre, 1.0))).z;
+    /// camera, infinite when the camera is inside. Unlike an edge's own length it does not vanish at silhouettes.
+    pub fn projected_diameter(&self, centre: Vec3, radius: f64) -> f64 {
+        let seen = self.world_to_camera.transform_point3(centre).as_dvec3();
+        let depth = -seen.z;
         if depth < -radius {
             return 0.0;
         }
-        if depth <= radius {
-            return f32::INFINITY;
+        let distance = seen.length();
+        if distance <= radius {
+            return f64::INFINITY;
         }
-        radius * self.projection.y_axis.y.abs() * self.size[1] as f32 / depth
+        // Beside the eye depth says nothing any more; the distance does.
+        let away = if depth > radius { depth } else { distance };
+        radius * f64::from(self.projection.y_axis.y.abs()) * f64::from(self.size[1]) / away
     }
 }
 
@@ -76,7 +80,7 @@ mod tests {
     #[test]
     fn jitter_moves_the_image_right_and_down() {
         let project = |camera: FrameCamera| {
-            let clip = camera.view_projection() * Vec4::new(0.2, 0.1, 0.3, 1.0);
+            let clip = camera.view_projection() * Vec3::new(0.2, 0.1, 0.3).extend(1.0);
             ((clip.truncate() / clip.w).truncate() * Vec2::new(0.5, -0.5) + 0.5) * Vec2::new(300.0, 200.0)
         };
         let moved = project(camera().jittered(Vec2::new(0.3, -0.2))) - project(camera());
@@ -88,9 +92,11 @@ mod tests {
         let camera = camera();
         let back = camera.world_to_camera.inverse();
         assert_eq!(camera.projected_diameter(back.transform_point3(Vec3::new(0.0, 0.0, 5.0)), 1.0), 0.0);
-        assert_eq!(camera.projected_diameter(back.transform_point3(Vec3::new(0.0, 0.0, 0.5)), 1.0), f32::INFINITY);
+        assert_eq!(camera.projected_diameter(back.transform_point3(Vec3::new(0.0, 0.0, 0.5)), 1.0), f64::INFINITY);
+        let beside = camera.projected_diameter(back.transform_point3(Vec3::new(3.0, 0.0, -0.5)), 1.0);
+        assert!(beside.is_finite() && beside > 0.0);
         let ahead = camera.projected_diameter(back.transform_point3(Vec3::new(0.0, 0.0, -10.0)), 1.0);
-        let expected = 2.0 / (0.4_f32.tan() * 2.0 * 10.0) * 200.0;
+        let expected = 2.0 / (0.4_f64.tan() * 2.0 * 10.0) * 200.0;
         assert!((ahead - expected).abs() < 1e-2);
     }
 }

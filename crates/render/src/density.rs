@@ -1,6 +1,6 @@
 //! How finely to tessellate, and so how deep to refine.
 
-use glam::Vec3;
+use glam::DVec3;
 use planish_subdiv::ControlMesh;
 use planish_subdiv::tables::Tables;
 
@@ -24,23 +24,23 @@ pub fn tess_factor(mesh: &ControlMesh, camera: &FrameCamera, density: Density) -
         Density::Tess(factor) if factor >= 1.0 && factor.is_finite() => return Ok(factor),
         Density::Tess(factor) => return Err(Error::TessFactor { factor }),
         Density::EdgePixels(pixels) if pixels > 0.0 && pixels.is_finite() => {
-            largest_projected_edge(mesh, camera) / pixels
+            (largest_projected_edge(mesh, camera) / f64::from(pixels)) as f32
         }
         Density::EdgePixels(pixels) => return Err(Error::EdgePixels { pixels }),
     };
     if factor.is_finite() { Ok(factor.max(1.0)) } else { Err(Error::CameraInMesh) }
 }
 
-fn largest_projected_edge(mesh: &ControlMesh, camera: &FrameCamera) -> f32 {
+fn largest_projected_edge(mesh: &ControlMesh, camera: &FrameCamera) -> f64 {
+    let at = |vertex: u32| DVec3::from(mesh.positions[vertex as usize].map(f64::from));
     let mut first = 0;
-    let mut largest = 0.0_f32;
+    let mut largest = 0.0_f64;
     for &sides in &mesh.face_sizes {
         let face = &mesh.face_vertices[first..first + sides as usize];
         first += sides as usize;
         for (i, &a) in face.iter().enumerate() {
-            let b = face[(i + 1) % face.len()];
-            let (a, b) = (Vec3::from(mesh.positions[a as usize]), Vec3::from(mesh.positions[b as usize]));
-            largest = largest.max(camera.projected_diameter(0.5 * (a + b), 0.5 * a.distance(b)));
+            let (a, b) = (at(a), at(face[(i + 1) % face.len()]));
+            largest = largest.max(camera.projected_diameter((0.5 * (a + b)).as_vec3(), 0.5 * a.distance(b)));
         }
     }
     largest

@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Mat4;
 use planish_gpu::{
     Buffer, BufferDesc, BufferKind, Device, Draw, DrawArguments, Encoder, Feature, Feedback, FeedbackList,
-    GraphicsPipeline,
+    GraphicsPipeline, Transfer,
 };
 
 use crate::camera::FrameCamera;
@@ -147,7 +147,9 @@ impl DumpPasses {
         let stride = size_of::<DrawArguments>() as u32;
         let draw = Draw::Indirect { arguments: &self.arguments, offset: 0, draw_count: 1, stride };
         encoder.transform_feedback(&feedback, &[FeedbackList { pipeline, push: bytemuck::bytes_of(&push), draw }]);
-        encoder.copy_buffer(&self.capture, &self.read_back);
+        let size = 3 * triangles * size_of::<CapturedVertex>() as u64;
+        let (from, to) = (&self.capture, &self.read_back);
+        encoder.transfer(&[Transfer::Copy { from, from_offset: 0, to, to_offset: 0, size }]);
         let report = device.submit_and_wait(&encoder.finish()?)?;
         let written = report.feedback.first().map_or(0, |(_, count)| count.written);
         if written != triangles {

@@ -59,18 +59,21 @@ pub fn limit(tables: &Tables, points: &[[f32; 3]]) -> Vec<LimitPoint> {
                 }
             }
             let [position, a, b] = sums;
-            let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-            LimitPoint { position: std::array::from_fn(|c| origin[c] + position[c]), normal: unit(cross) }
+            LimitPoint { position: std::array::from_fn(|c| origin[c] + position[c]), normal: unit_normal(a, b) }
         })
         .collect()
 }
 
-fn unit(vector: [f32; 3]) -> [f32; 3] {
-    let largest = vector.iter().fold(0.0_f32, |m, c| m.max(c.abs()));
-    if largest == 0.0 {
-        return vector;
-    }
-    let scaled = vector.map(|c| c / largest);
-    let size = (scaled[0] * scaled[0] + scaled[1] * scaled[1] + scaled[2] * scaled[2]).sqrt();
-    scaled.map(|c| c / size)
+/// `scaled` of `glsl/shared/bspline.glsl`.
+fn scaled(a: [f32; 3]) -> [f32; 3] {
+    let largest = a.iter().fold(f32::MIN_POSITIVE, |m, c| m.max(c.abs()));
+    a.map(|c| c / largest)
+}
+
+/// `unit_normal` of `glsl/shared/bspline.glsl`.
+fn unit_normal(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    let (a, b) = (scaled(a), scaled(b));
+    let n = scaled([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]);
+    let size = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).max(f32::MIN_POSITIVE).sqrt();
+    n.map(|c| c / size)
 }

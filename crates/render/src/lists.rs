@@ -12,7 +12,7 @@ use planish_subdiv::tables::Tables;
 
 use crate::density::FACTOR_COUNT;
 use crate::options::{Spacing, SurfaceMethod};
-use crate::tessellation::segment_count;
+use crate::tessellation::{filling_segment_count, segment_count};
 
 /// The kinds of patches, in the order of their lists and draws; also the `kind` of a dump.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,20 +94,14 @@ pub struct DrawShape<'a> {
 impl DrawShape<'_> {
     /// About how many vertices a patch generates.
     fn vertex_count(&self, tables: &Tables, kind: PatchKind, entry: u32) -> u32 {
-        match kind {
-            PatchKind::Filling => {
-                if self.spacing == Spacing::FractionalEven {
-                    9
-                } else {
-                    4
-                }
-            }
+        let segments = match kind {
+            PatchKind::Filling => filling_segment_count(self.method, self.spacing),
             PatchKind::Regular | PatchKind::Transition => {
                 let level = usize::from(tables.patches[entry as usize].info.level);
-                let side = segment_count(self.factors[level], self.spacing) + 1;
-                side * side
+                segment_count(self.factors[level], self.spacing)
             }
-        }
+        };
+        (segments + 1) * (segments + 1)
     }
 }
 

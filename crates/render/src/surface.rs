@@ -15,6 +15,7 @@ use crate::limit::Limit;
 use crate::lists::{DrawShape, Lists};
 use crate::options::{Spacing, SurfaceMethod};
 use crate::subdivide::Subdivide;
+use crate::tessellation::filling_segment_count;
 use crate::upload::{array, mapped, table};
 
 /// What to make of a cage.
@@ -65,7 +66,7 @@ pub fn preprocess(mesh: &ControlMesh, desc: &SurfaceDesc) -> Result<Preprocessed
     let options = RefineOptions {
         max_level: desc.level,
         uniform: desc.method == SurfaceMethod::Uniform,
-        midpoints: desc.method != SurfaceMethod::Uniform && desc.spacing == Spacing::FractionalEven,
+        midpoints: filling_segment_count(desc.method, desc.spacing) == 2,
     };
     let refinement = Refinement::new(mesh, options)?;
     let topology = milliseconds(start);

@@ -36,9 +36,14 @@ pub fn patch_triangle_count(info: &PatchInfo, factors: &[f32; FACTOR_COUNT], spa
     2 * inner * inner + edges.iter().map(|&edge| u64::from(edge) + inner).sum::<u64>()
 }
 
+/// Number of segments of a patch-filling quad's edges: two where limit points at their middles come along.
+pub fn filling_segment_count(method: SurfaceMethod, spacing: Spacing) -> u32 {
+    if method == SurfaceMethod::Fas { segment_count(1.0, spacing) } else { 1 }
+}
+
 /// Number of triangles of a patch-filling quad.
 pub fn filling_triangle_count(method: SurfaceMethod, spacing: Spacing) -> u64 {
-    if method == SurfaceMethod::Fas && spacing == Spacing::FractionalEven { 8 } else { 2 }
+    2 * u64::from(filling_segment_count(method, spacing)).pow(2)
 }
 
 /// Number of triangles of a whole surface.

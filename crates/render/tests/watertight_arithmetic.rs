@@ -6,9 +6,18 @@ use planish_shaders::{self as shaders, ShaderModule};
 
 /// Functions whose arithmetic decides shared positions and normals, by module.
 const WATERTIGHT: [(&ShaderModule, &[&str]); 4] = [
-    (&shaders::bspline_patch_lean_tese::PROGRAM, &["cubic_basis", "weigh", "precise_cross", "unit", "place"]),
-    (&shaders::bspline_patch_layers_tese::PROGRAM, &["cubic_basis", "weigh", "precise_cross", "unit", "place"]),
-    (&shaders::bspline_patch_dump_tese::PROGRAM, &["cubic_basis", "weigh", "precise_cross", "unit", "place"]),
+    (
+        &shaders::bspline_patch_lean_tese::PROGRAM,
+        &["cubic_basis", "weigh", "precise_cross", "scaled", "unit_normal", "place"],
+    ),
+    (
+        &shaders::bspline_patch_layers_tese::PROGRAM,
+        &["cubic_basis", "weigh", "precise_cross", "scaled", "unit_normal", "place"],
+    ),
+    (
+        &shaders::bspline_patch_dump_tese::PROGRAM,
+        &["cubic_basis", "weigh", "precise_cross", "scaled", "unit_normal", "place"],
+    ),
     (&shaders::bspline_patch_tesc::PROGRAM, &["reflected_point"]),
 ];
 

@@ -1,5 +1,6 @@
 //! A pinhole camera, its matrices and the default view.
-use glam::camera::rh::{proj::vulkan::perspective_infinite_reverse, view::look_at_mat4};
+use glam::camera::rh::proj::vulkan::perspective_infinite_reverse;
+use glam::dcamera::rh::view::look_at_mat4;
 use glam::{Mat4, Vec3};
 
 use crate::{Bounds, Error};
@@ -10,8 +11,8 @@ const DEFAULT_FOV_Y_DEGREES: f32 = 45.0;
 const DEFAULT_DIRECTION: glam::DVec3 = glam::DVec3::new(1.0, 0.6, 1.2);
 /// Default view: distance from the centre of the box to the eye, in diagonals of the box.
 const DEFAULT_DISTANCE: f64 = 1.1;
-/// Distance of the near plane, in diagonals of the box, for an eye no nearer to its target than in the default view.
-const NEAR: f64 = 0.05;
+/// Distance of the near plane, in diagonals of the box. A reversed depth in floating point has digits to spare.
+const NEAR: f64 = 1e-4;
 /// Sine of the angle between up and the line of sight below which they count as parallel.
 const MIN_UP_SINE: f64 = 1e-5;
 
@@ -35,7 +36,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A camera that looks at a scene whose bounding box has the given diagonal. The near plane lies at 0.05 diagonals,
+    /// A camera that looks at a scene whose bounding box has the given diagonal. The near plane lies at 1/10,000 of it,
     /// and nearer in proportion when the eye is nearer to its target than in the default view (1.1 diagonals).
     ///
     /// # Errors
@@ -102,7 +103,8 @@ impl Camera {
 
     /// World to camera: right-handed, x right, y up, the camera looks along -z.
     pub fn view_matrix(&self) -> Mat4 {
-        look_at_mat4(self.eye, self.target, self.up)
+        // In double: squares of huge or tiny coordinates leave the range of floats.
+        look_at_mat4(self.eye.as_dvec3(), self.target.as_dvec3(), self.up.as_dvec3()).as_mat4()
     }
 
     /// Camera to Vulkan's clip space: y down, depth 1 at the near plane and 0 at infinity. `aspect` is width / height.
@@ -135,7 +137,7 @@ mod tests {
         assert_eq!(camera.target, Vec3::new(1.0, 5.0, 9.0));
         assert!((camera.eye - Vec3::new(1.0 + step, 5.0 + 0.6 * step, 9.0 + 1.2 * step)).length() < 1e-5);
         assert_eq!((camera.up, camera.fov_y_degrees), (Vec3::Y, 45.0));
-        assert!((camera.near - 0.7).abs() < 1e-6);
+        assert!((camera.near - 1.4e-3).abs() < 1e-9);
         assert_eq!(camera.far, f32::INFINITY);
     }
 
@@ -176,9 +178,9 @@ mod tests {
     #[test]
     fn near_plane_follows_an_eye_that_comes_close_and_stays_for_one_that_leaves() {
         let near = |distance: f32| Camera::upright("c", Vec3::X * distance, Vec3::ZERO, 45.0, 2.0).unwrap().near;
-        assert!((near(2.2) - 0.1).abs() < 1e-6);
-        assert!((near(0.22) - 0.01).abs() < 1e-6);
-        assert!((near(220.0) - 0.1).abs() < 1e-6);
+        assert!((near(2.2) - 2e-4).abs() < 1e-9);
+        assert!((near(0.22) - 2e-5).abs() < 1e-9);
+        assert!((near(220.0) - 2e-4).abs() < 1e-9);
     }
 
     #[test]

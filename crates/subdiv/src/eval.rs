@@ -11,7 +11,7 @@ use crate::patch::{SurfacePoint, control_points, evaluate, reflect};
 use crate::refine::{Split, split_level};
 use crate::topology::Level;
 
-/// Pieces smaller than this fraction of a base face are taken as their corner.
+/// Halvings of a base face after which a piece is taken as its corner.
 const MAX_DEPTH: u32 = 60;
 
 /// Evaluates the limit surface of one cage.

@@ -87,6 +87,11 @@ impl Refinement {
             }
             refinement.irregular_faces.push(irregular);
         }
+        // Rows average fewer than 8 indices: what the tables number stays within 32 bits.
+        let count = refinement.splits.iter().map(|split| split.point_count() as u64).sum::<u64>();
+        if 8 * count >= u64::from(u32::MAX) {
+            return Err(Error::TooLarge { level: last_level, count: 8 * count });
+        }
         Ok(refinement)
     }
 

@@ -75,8 +75,7 @@ impl StencilTable {
     }
 
     /// Appends the rows of one split: vertex points, edge points, face points. `first_point` is the place of the
-    /// parent level's points among those of all levels, `first_child` that of the new ones. Returns how many rows
-    /// must be made before the rest: those of the faces, where some are not substituted.
+    /// parent level's points among those of all levels, `first_child` that of the new ones.
     pub(crate) fn append_split(
         &mut self,
         parent: &Level,
