@@ -1,1 +1,25 @@
-//! Helpers shared by the end-to-end tests.
+//! Helpers shared by the end-to-end tests, which run the programs that users run and judge what comes out.
+//!
+//! | module | idea |
+//! |---|---|
+//! | `repository` | where scenes, models and programs are |
+//! | `program` | running `planish` and judging how it ended |
+//! | `parallel` | many independent checks on all cores, all failures told |
+//! | `cage` | a mesh file's faces: Ptex numbering, boundary |
+//! | `ply` | dumps, read and thinned out |
+//! | `oracle` | a dump against OpenSubdiv's limit surface |
+//! | `weld` | a dump as one connected mesh |
+//! | `folder` | a folder to write into, which must end as it was meant to |
+//! | `layers` | an EXR file's channels |
+//! | `golden` | images against committed ones |
+
+pub mod cage;
+pub mod folder;
+pub mod golden;
+pub mod layers;
+pub mod oracle;
+pub mod parallel;
+pub mod ply;
+pub mod program;
+pub mod repository;
+pub mod weld;
