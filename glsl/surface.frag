@@ -30,7 +30,7 @@ void main()
     float depth = -(push.frame.v.world_to_camera * vec4(in_position, 1.0)).z;
     out_normal_depth = vec4(normal, depth);
     out_position_factor = vec4(in_position, in_factor);
-    out_ids = uvec4(in_ids.x, in_ids.y | in_ids.z << 28, floatBitsToUint(in_uv));
+    out_ids = uvec4(in_ids.x, in_ids.y | in_ids.z << 28, floatBitsToUint(clamp(in_uv, 0.0, 1.0)));
 #else
     out_color = vec4(shade(facing, to_eye), 1.0);
 #endif

@@ -30,7 +30,7 @@ pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
     check_placeholder(&arguments.output, range)?;
     check_dump_output(&frame_path(&arguments.output, range.frames().next().unwrap_or_default()))?;
     let stats_output = StatsOutput(arguments.frames.stats.as_ref());
-    stats_output.check()?;
+    stats_output.check([arguments.output.as_path()].into_iter())?;
     let plan = Plan::unseen(&cage, &arguments.surface, &arguments.view)?;
     let device = open_device(&arguments.device, console)?;
     let mut session = Session::new(&device, &cage, &plan, console)?;

@@ -1,6 +1,6 @@
 //! `planish render`: frames to EXR and PNG.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use planish_film::{Film, ImageFormat, Metadata, check_image_output, write_image};
@@ -21,7 +21,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<()> {
     let aovs = arguments.aov.available()?;
     check_outputs(arguments, aovs, console)?;
     let stats_output = StatsOutput(arguments.frames.stats.as_ref());
-    stats_output.check()?;
+    stats_output.check(arguments.outputs.iter().map(PathBuf::as_path))?;
     let plan = Plan::new(&cage, &arguments.surface, &arguments.view)?;
     let device = open_device(&arguments.device, console)?;
     let mut session = Session::new(&device, &cage, &plan, console)?;

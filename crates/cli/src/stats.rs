@@ -1,10 +1,9 @@
 //! The JSON of `--stats`.
 
-use std::fs::File;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Result, bail};
+use planish_film::{check_text_output, write_text};
 use planish_gpu::{Device, SubmitReport};
 use planish_render::SurfaceMethod;
 use serde::Serialize;
@@ -209,10 +208,13 @@ pub fn method_name(method: SurfaceMethod) -> &'static str {
 pub struct StatsOutput<'a>(pub Option<&'a PathBuf>);
 
 impl StatsOutput<'_> {
-    /// Whether they could be written now.
-    pub fn check(&self) -> Result<()> {
+    /// Whether they could be written now, and not over one of the results.
+    pub fn check<'p>(&self, mut results: impl Iterator<Item = &'p Path>) -> Result<()> {
         match self.0 {
-            Some(path) if !is_standard_output(path) => create_beside(path).map(drop),
+            Some(path) if results.any(|result| result == path) => {
+                bail!("{}: --stats names the same file as -o", path.display())
+            }
+            Some(path) if !is_standard_output(path) => Ok(check_text_output(path)?),
             _ => Ok(()),
         }
     }
@@ -225,29 +227,12 @@ impl StatsOutput<'_> {
         if is_standard_output(path) {
             return print_output(&text);
         }
-        let mut file = create_beside(path)?;
-        file.write_all(text.as_bytes()).with_context(|| cannot_write(path))?;
-        file.persist(path).map_err(|error| error.error).with_context(|| cannot_write(path))?;
-        Ok(())
+        Ok(write_text(&text, path)?)
     }
 }
 
 fn is_standard_output(path: &Path) -> bool {
     path.as_os_str() == STANDARD_OUTPUT
-}
-
-fn cannot_write(path: &Path) -> String {
-    format!("cannot write {}", path.display())
-}
-
-/// A temporary file in the same folder, with the permissions of any new file.
-fn create_beside(path: &Path) -> Result<tempfile::NamedTempFile> {
-    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    anyhow::ensure!(!path.is_dir(), "{}: it is a folder", cannot_write(path));
-    tempfile::Builder::new()
-        .prefix(".planish-")
-        .make_in(folder, |temporary| File::create_new(temporary))
-        .with_context(|| cannot_write(path))
 }
 
 #[cfg(test)]
@@ -306,7 +291,7 @@ mod tests {
         let path = folder.path().join("stats.json");
         std::fs::write(&path, "old").unwrap();
         let output = StatsOutput(Some(&path));
-        output.check().unwrap();
+        output.check(std::iter::empty()).unwrap();
         output.write(&Stats::default()).unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
         assert!(serde_json::from_str::<Value>(&text).is_ok());
@@ -314,10 +299,17 @@ mod tests {
     }
 
     #[test]
+    fn stats_do_not_replace_a_result_or_a_device() {
+        let path = PathBuf::from("surface.ply");
+        assert!(StatsOutput(Some(&path)).check([path.as_path()].into_iter()).is_err());
+        assert!(StatsOutput(Some(&PathBuf::from("/dev/null"))).check(std::iter::empty()).is_err());
+    }
+
+    #[test]
     fn a_folder_that_is_not_there_is_found_out_before() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("absent").join("stats.json");
-        assert!(StatsOutput(Some(&path)).check().unwrap_err().to_string().contains("absent"));
-        assert!(StatsOutput(Some(&folder.path().to_owned())).check().is_err());
+        assert!(StatsOutput(Some(&path)).check(std::iter::empty()).unwrap_err().to_string().contains("absent"));
+        assert!(StatsOutput(Some(&folder.path().to_owned())).check(std::iter::empty()).is_err());
     }
 }

@@ -1,5 +1,6 @@
 //! Which format a path asks for, and whether anything can be written there.
 
+use std::io::Write as _;
 use std::path::Path;
 
 use crate::{Error, Film, Result, atomic, write_exr, write_png};
@@ -54,6 +55,22 @@ pub fn check_image_output(path: &Path) -> Result<ImageFormat> {
     let format = ImageFormat::from_path(path)?;
     atomic::check(path)?;
     Ok(format)
+}
+
+/// Writes text beside the images, by the same rules: complete or not at all, and never over what is no plain file.
+///
+/// # Errors
+/// [`Error::NoFolder`], [`Error::NotAFolder`], [`Error::NotAFile`], [`Error::Write`].
+pub fn write_text(text: &str, path: &Path) -> Result<()> {
+    atomic::write(path, |writer| writer.write_all(text.as_bytes()).map_err(|source| Error::write(path, source)))
+}
+
+/// Whether text could be written to `path` now.
+///
+/// # Errors
+/// As [`write_text`].
+pub fn check_text_output(path: &Path) -> Result<()> {
+    atomic::check(path)
 }
 
 /// Whether a dump could be written to `path` now; as [`check_image_output`], for the extension `.ply`.

@@ -18,7 +18,7 @@ pub enum Error {
         found: u64,
     },
     /// A face has fewer than three sides or far too many.
-    #[error("face {face} has {sides} sides; expected 3 to {max}", max = crate::mesh::MAX_FACE_SIDES)]
+    #[error("face {face} (from 0) has {sides} sides; expected 3 to {max}", max = crate::mesh::MAX_FACE_SIDES)]
     FaceSides {
         /// The face.
         face: u32,
@@ -26,7 +26,7 @@ pub enum Error {
         sides: u32,
     },
     /// An index points past the end of what it names.
-    #[error("{what} {index} is out of range: there are {count}")]
+    #[error("{what} {index} (from 0) is out of range: there are {count}")]
     OutOfRange {
         /// What the index names.
         what: &'static str,
@@ -36,7 +36,7 @@ pub enum Error {
         count: u32,
     },
     /// A face names a vertex twice.
-    #[error("face {face} names vertex {vertex} twice")]
+    #[error("face {face} names vertex {vertex} twice (both from 0)")]
     RepeatedVertex {
         /// The face.
         face: u32,
@@ -44,13 +44,13 @@ pub enum Error {
         vertex: u32,
     },
     /// An edge has more than two faces, or two that run the same way along it.
-    #[error("the edge between vertices {0} and {1} is not manifold (more than two faces, or two of opposite orientation); such cages are not supported yet", vertices[0], vertices[1])]
+    #[error("the edge between vertices {0} and {1} (from 0) is not manifold (more than two faces, or two of opposite orientation); such cages are not supported yet", vertices[0], vertices[1])]
     NonManifoldEdge {
         /// The edge's vertices.
         vertices: [u32; 2],
     },
     /// The faces at a vertex form more than one fan.
-    #[error("the faces at vertex {vertex} form more than one fan; non-manifold cages are not supported yet")]
+    #[error("the faces at vertex {vertex} (from 0) form more than one fan; non-manifold cages are not supported yet")]
     NonManifoldVertex {
         /// The vertex.
         vertex: u32,
@@ -61,8 +61,8 @@ pub enum Error {
         /// Plural name of the feature.
         feature: &'static str,
     },
-    /// A position is NaN or infinite.
-    #[error("vertex {vertex} has a coordinate that is not finite")]
+    /// A position is NaN, infinite, or so far away that sums of it leave the range of floats.
+    #[error("vertex {vertex} (from 0) has a coordinate that is not finite, or beyond {max:e}", max = crate::mesh::MAX_COORDINATE)]
     NotFinite {
         /// The vertex.
         vertex: u32,

@@ -8,6 +8,9 @@ pub const INFINITE_SHARPNESS: f32 = 10.0;
 /// Largest number of sides that a face may have; a bound on what a file can claim, far above any real pole.
 pub const MAX_FACE_SIDES: u32 = 1 << 20;
 
+/// Largest magnitude of a coordinate: a patch sums 16 control points with weights of 36 in all, in 32-bit floats.
+pub const MAX_COORDINATE: f32 = 1e36;
+
 /// Bound on points, half-edges and faces of a level: indices are 32 bits and the last one means "none".
 pub const MAX_ELEMENTS: u32 = 1 << 31;
 
@@ -172,7 +175,7 @@ impl ControlMesh {
         if found >= u64::from(MAX_ELEMENTS) || self.positions.len() as u64 >= u64::from(MAX_ELEMENTS) {
             return Err(Error::TooLarge { level: 0, count: found.max(self.positions.len() as u64) });
         }
-        if let Some(vertex) = self.positions.iter().position(|p| p.iter().any(|c| !c.is_finite())) {
+        if let Some(vertex) = self.positions.iter().position(|p| !p.iter().all(|c| c.abs() <= MAX_COORDINATE)) {
             return Err(Error::NotFinite { vertex: vertex as u32 });
         }
         let in_range = |what, index: u32, count: usize| {
