@@ -24,7 +24,7 @@ const QUEUED_PARTS: usize = 2;
 pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
     let cage = Cage::load(&arguments.scene.path, arguments.scene.repair, console)?;
     if cage.has_uv() {
-        console.warn(format_args!("the dump has no s and t: face-varying channels are not evaluated yet"));
+        console.explain(format_args!("the dump has no s and t: face-varying channels are not evaluated yet"));
     }
     let range = arguments.frames.range();
     check_placeholder(&arguments.output, range)?;
