@@ -43,18 +43,6 @@ pub enum Error {
         /// The vertex.
         vertex: u32,
     },
-    /// An edge has more than two faces, or two that run the same way along it.
-    #[error("the edge between vertices {0} and {1} (from 0) is not manifold (more than two faces, or two of opposite orientation); such cages are not supported yet", vertices[0], vertices[1])]
-    NonManifoldEdge {
-        /// The edge's vertices.
-        vertices: [u32; 2],
-    },
-    /// The faces at a vertex form more than one fan.
-    #[error("the faces at vertex {vertex} (from 0) form more than one fan; non-manifold cages are not supported yet")]
-    NonManifoldVertex {
-        /// The vertex.
-        vertex: u32,
-    },
     /// The mesh has a feature whose rules are not there yet.
     #[error("the mesh has {feature}, which is not supported yet")]
     Unsupported {

@@ -9,6 +9,8 @@ use crate::limit::limit_mask;
 use crate::mesh::ControlMesh;
 use crate::patch::{SurfacePoint, control_points, evaluate, reflect};
 use crate::refine::{Split, split_level};
+use crate::rules::{self, VertexRule};
+use crate::sharpness::{SharpnessAtVertex, child_sharpness};
 use crate::topology::Level;
 
 /// Halvings of a base face after which a piece is taken as its corner.
@@ -100,9 +102,13 @@ impl Piece {
             _ if self.depth >= MAX_DEPTH => Some(0),
             _ => None,
         };
-        let vertices = self.level.vertices(self.face);
-        if let Some(vertex) = corner.map(|i: usize| vertices[i]).filter(|&v| self.level.tag(v).touches_only_quads()) {
-            return self.placed(self.limit(vertex), 1.0);
+        // Where rules still change, the corner is followed until they do not.
+        let corner = corner.map(|i: u32| self.level.half_edges(self.face).start + i).filter(|&corner| {
+            let tag = self.level.tag(self.level.origin(corner));
+            tag.touches_only_quads() && !tag.is_semi_sharp()
+        });
+        if let Some(corner) = corner {
+            return self.placed(self.limit(corner), 1.0);
         }
         let (i, low_u, low_v) = match (u > 0.5, v > 0.5) {
             (false, false) => (0, 0.0, 0.0),
@@ -123,8 +129,8 @@ impl Piece {
         })
     }
 
-    fn limit(&self, vertex: u32) -> SurfacePoint {
-        let (points, weights) = limit_mask(&self.level, vertex);
+    fn limit(&self, corner: u32) -> SurfacePoint {
+        let (points, weights) = limit_mask(&self.level, corner);
         let mut result = SurfacePoint::default();
         for (point, weight) in points.iter().zip(weights) {
             let p = add(self.points[*point as usize], self.points[points[0] as usize], -1.0);
@@ -153,29 +159,40 @@ pub fn subdivide_points(parent: &Level, split: &Split, points: &[[f64; 3]]) -> V
         let vertices = parent.vertices(face);
         vertices.iter().fold([0.0; 3], |sum, &v| add(sum, at(v), 1.0 / vertices.len() as f64))
     };
-    let vertex_point = |vertex: u32| {
-        let tag = parent.tag(vertex);
+    let smooth = |vertex: u32| {
         let spokes: Vec<u32> = parent.spokes(vertex).collect();
-        if tag.is_corner() {
-            return at(vertex);
-        }
-        if tag.is_boundary() {
-            let (first, last) = (parent.head(spokes[0]), parent.origin(parent.previous(spokes[spokes.len() - 1])));
-            return add(add(at(vertex).map(|c| 0.75 * c), at(first), 0.125), at(last), 0.125);
-        }
         let n = spokes.len() as f64;
         spokes.iter().fold(at(vertex).map(|c| c * (n - 2.0) / n), |sum, &spoke| {
             let sum = add(sum, at(parent.head(spoke)), 1.0 / (n * n));
             add(sum, centre(parent.face(spoke)), 1.0 / (n * n))
         })
     };
+    let vertex_point = |vertex: u32| {
+        let sharpness = SharpnessAtVertex::of(parent, vertex);
+        let by_rule = |(rule, ends): (VertexRule, [usize; 2])| match rule {
+            VertexRule::Corner => at(vertex),
+            VertexRule::Crease => {
+                let [a, b] = ends.map(|end| at(sharpness.ends[end]));
+                add(add(at(vertex).map(|c| 0.75 * c), a, 0.125), b, 0.125)
+            }
+            VertexRule::Smooth | VertexRule::Dart => smooth(vertex),
+        };
+        let blend = sharpness.blend(parent.creasing);
+        let (before, after) = (by_rule(blend.before), by_rule(blend.after));
+        add(before.map(|c| c * blend.weight), after, 1.0 - blend.weight)
+    };
     let edge_point = |half_edge: u32| {
         let (a, b) = (at(parent.origin(half_edge)), at(parent.head(half_edge)));
-        if parent.is_boundary(half_edge) {
-            return add(a.map(|c| 0.5 * c), b, 0.5);
+        let middle = add(a.map(|c| 0.5 * c), b, 0.5);
+        if parent.is_unpaired(half_edge) {
+            return middle;
         }
-        let sides = [parent.face(half_edge), parent.face(parent.twin(half_edge))];
-        sides.iter().fold(add(a.map(|c| 0.25 * c), b, 0.25), |sum, &face| add(sum, centre(face), 0.25))
+        let faces = [half_edge, parent.twin(half_edge)].map(|h| parent.face(h));
+        let weight = rules::edge_face_weight(parent.smooth_triangles, faces.map(|face| parent.sides(face)));
+        let smooth =
+            faces.iter().fold(middle.map(|c| c * (1.0 - 2.0 * weight)), |sum, &face| add(sum, centre(face), weight));
+        let crease = rules::edge_crease_weight(parent.sharpness(half_edge), child_sharpness(parent, half_edge));
+        add(smooth.map(|c| c * (1.0 - crease)), middle, crease)
     };
     let vertices = split.vertices.iter().map(|&v| vertex_point(v));
     let edges = split.edges.iter().map(|&e| edge_point(e));

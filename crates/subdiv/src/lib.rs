@@ -1,6 +1,6 @@
 //! Control meshes, subdivision rules, refinement, tables and the CPU evaluator.
 //!
-//! Layers, each using only those before it: [`rules`] (masks, no topology), [`mesh`] (the cage), [`topology`] (one level
+//! Layers, each using only those before it: [`mesh`] (the cage), [`rules`] (masks, no topology), [`topology`] (one level
 //! as half-edges), [`refine`] (feature-adaptive levels), then [`tables`] (what the GPU reads) and [`eval`] (f64 evaluator).
 
 pub mod error;
@@ -9,7 +9,9 @@ pub mod limit;
 pub mod mesh;
 pub mod patch;
 pub mod refine;
+mod ring;
 pub mod rules;
+mod sharpness;
 pub mod stencil;
 pub mod tables;
 pub mod topology;

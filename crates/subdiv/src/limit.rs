@@ -1,6 +1,14 @@
-//! Limit rows: position and two tangents on the limit surface at a vertex, from the points of its level.
+//! Limit rows: position and two tangents on the limit surface at a corner of a face, from the points of its level.
+//!
+//! A vertex has one position, but a normal for each sector that infinitely sharp edges cut out around it. Where rules
+//! still change from level to level (semi-sharp edges and vertices) the mask is that of the vertex after its sharpness
+//! has decayed, carried back through the steps in between: exact at any level.
 
-use crate::rules::{self, BoundaryTangent};
+use std::collections::HashMap;
+
+use crate::ring::{Ring, Step};
+use crate::rules::{self, BoundaryTangent, VertexRule};
+use crate::sharpness::SharpnessAtVertex;
 use crate::stencil::{StencilRow, boundary_neighbours, ring_pair, shared};
 use crate::topology::Level;
 
@@ -16,55 +24,71 @@ pub struct LimitTable {
     pub weights: Vec<[f32; 3]>,
 }
 
-/// Limit weights that rows of the same rule share, by number of faces.
+/// Limit weights that rows of the same rule share.
 #[derive(Debug, Default)]
 pub(crate) struct SharedLimitWeights {
     smooth: Vec<Option<u32>>,
     boundary: Vec<Option<u32>>,
     corner: Vec<Option<u32>>,
+    cone: Vec<Option<u32>>,
+    /// Of creased vertices, by their bits.
+    interned: HashMap<Vec<[u32; 3]>, u32>,
 }
 
-/// The limit mask at a vertex whose faces are all quads: its points, as vertices of the level, and in f64 the weights
-/// of position and tangents.
-pub fn limit_mask(level: &Level, vertex: u32) -> (Vec<u32>, Vec<[f64; 3]>) {
+/// The limit mask at a corner (an outgoing half-edge) of a vertex whose faces are all quads: its points, as vertices of
+/// the level, and in f64 the weights of position and tangents.
+pub fn limit_mask(level: &Level, corner: u32) -> (Vec<u32>, Vec<[f64; 3]>) {
+    let vertex = level.origin(corner);
+    if !level.tag(vertex).is_plain() {
+        return creased_mask(level, corner);
+    }
     let (mut points, mut weights) = (Vec::new(), Vec::new());
     let rule = mask_points(level, vertex, |point| points.push(point));
     mask_weights(rule, |weight| weights.push(weight));
     (points, weights)
 }
 
-/// A limit rule, with the number of faces at the vertex.
+/// The limit rule of a sector with so many faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum LimitRule {
     Smooth(u32),
+    /// Between the two edges of a crease, or of the boundary.
     Boundary(u32),
+    /// Between two infinitely sharp edges of an interpolated vertex.
     Corner(u32),
+    /// All around an interpolated vertex: the tip of a cone.
+    Cone(u32),
 }
 
+/// Points of the mask of a plain vertex: itself, then the edge's end and the opposite corner of each face in turn, and
+/// on the boundary the end of the last edge.
 fn mask_points(level: &Level, vertex: u32, mut push: impl FnMut(u32)) -> LimitRule {
     let tag = level.tag(vertex);
     debug_assert!(tag.touches_only_quads(), "limit masks are for quads");
     push(vertex);
     let mut face_count = 0;
-    if tag.is_corner() {
-        boundary_neighbours(level, vertex).into_iter().for_each(&mut push);
-        return LimitRule::Corner(level.spokes(vertex).count() as u32);
-    }
     for spoke in level.spokes(vertex) {
         face_count += 1;
         ring_pair(level, spoke).into_iter().for_each(&mut push);
     }
     if tag.is_boundary() {
         push(boundary_neighbours(level, vertex)[1]);
-        return LimitRule::Boundary(face_count);
     }
-    LimitRule::Smooth(face_count)
+    match (tag.is_boundary(), tag.is_corner()) {
+        (false, false) => LimitRule::Smooth(face_count),
+        (false, true) => LimitRule::Cone(face_count),
+        (true, false) => LimitRule::Boundary(face_count),
+        (true, true) => LimitRule::Corner(face_count),
+    }
 }
 
 fn mask_weights(rule: LimitRule, mut push: impl FnMut([f64; 3])) {
     match rule {
-        LimitRule::Smooth(valence) => {
-            let mask = rules::smooth_limit(valence);
+        LimitRule::Smooth(valence) | LimitRule::Cone(valence) => {
+            let mask = match rule {
+                LimitRule::Cone(_) => rules::VertexMask { vertex: 1.0, edge: 0.0, face: 0.0 },
+                _ => rules::smooth_limit(valence),
+            };
             push([mask.vertex, 0.0, 0.0]);
             for i in 0..valence {
                 let (edge, face) = rules::smooth_tangents(valence, i);
@@ -72,9 +96,9 @@ fn mask_weights(rule: LimitRule, mut push: impl FnMut([f64; 3])) {
                 push([mask.face, face[0], face[1]]);
             }
         }
-        LimitRule::Boundary(face_count) => {
+        LimitRule::Boundary(face_count) | LimitRule::Corner(face_count) => {
             let across = BoundaryTangent::new(face_count);
-            let end = rules::CREASE_LIMIT_END;
+            let end = if rule == LimitRule::Corner(face_count) { 0.0 } else { rules::CREASE_LIMIT_END };
             push([1.0 - 2.0 * end, 0.0, across.vertex()]);
             for i in 0..face_count {
                 let first = if i == 0 { 1.0 } else { 0.0 };
@@ -83,28 +107,103 @@ fn mask_weights(rule: LimitRule, mut push: impl FnMut([f64; 3])) {
             }
             push([end, -1.0, across.edge(face_count)]);
         }
-        LimitRule::Corner(_) => {
-            push([1.0, 0.0, 0.0]);
-            push([0.0, 1.0, 0.0]);
-            push([0.0, 0.0, 1.0]);
-        }
     }
 }
 
+/// The mask in a sector of a vertex with creases: the ring is followed until nothing is semi-sharp any more, and the
+/// mask of the rule that is left is carried back step by step.
+fn creased_mask(level: &Level, corner: u32) -> (Vec<u32>, Vec<[f64; 3]>) {
+    let sharpness = SharpnessAtVertex::of(level, level.origin(corner));
+    let sector = level.sector(corner);
+    let ring = Ring::new(level, &sector, &sharpness);
+    let (steps, last) = ring.decay(level, sharpness);
+    let face_count = ring.face_count as u32;
+    let mut weights = Vec::with_capacity(ring.points.len());
+    let is_closed = ring.is_closed;
+    match last.before.0 {
+        VertexRule::Smooth => mask_weights(LimitRule::Smooth(face_count), |weight| weights.push(weight)),
+        VertexRule::Dart => weights = dart_mask(&ring),
+        VertexRule::Crease if !is_closed => {
+            mask_weights(LimitRule::Boundary(face_count), |weight| weights.push(weight));
+        }
+        VertexRule::Corner if !is_closed => mask_weights(LimitRule::Corner(face_count), |weight| weights.push(weight)),
+        // A whole fan that touches a crease or a corner at one vertex.
+        VertexRule::Crease | VertexRule::Corner => {
+            mask_weights(LimitRule::Cone(face_count), |weight| weights.push(weight));
+        }
+    }
+    weights.resize(ring.points.len(), [0.0; 3]);
+    if last.before.0 == VertexRule::Crease && is_closed {
+        weights[0][0] = 1.0 - 2.0 * rules::CREASE_LIMIT_END;
+        last.before.1.into_iter().for_each(|edge| weights[ring.edge_places[edge]][0] = rules::CREASE_LIMIT_END);
+    }
+    for step in steps.iter().rev() {
+        weights = ring.carry_back(step, &weights);
+    }
+    (ring.points, weights)
+}
+
+/// The mask at the end of an infinitely sharp crease inside a smooth surface, where no closed form is known: the left
+/// eigenvectors of the refinement step, found by iterating it. The position's belongs to the eigenvalue 1; the tangents
+/// are the leading ones among those that are symmetric about the crease and those that are not.
+fn dart_mask(ring: &Ring) -> Vec<[f64; 3]> {
+    /// The second eigenvalue is below 0.76 at any valence: more than double precision asks for.
+    const STEPS: usize = 200;
+    let step = Step::dart(ring);
+    let count = ring.points.len();
+    let valence = ring.face_count as u32;
+    let mut weights = vec![[0.0; 3]; count];
+    weights[0] = [1.0, 0.0, 0.0];
+    for i in 0..valence {
+        let (edge, face) = rules::smooth_tangents(valence, i);
+        weights[1 + 2 * i as usize] = [0.0, edge[0], edge[1]];
+        weights[2 + 2 * i as usize] = [0.0, face[0], face[1]];
+    }
+    for _ in 0..STEPS {
+        weights = ring.carry_back(&step, &weights);
+        let sum: f64 = weights.iter().map(|w| w[0]).sum();
+        weights.iter_mut().for_each(|w| w[0] /= sum);
+        for tangent in [1, 2] {
+            // What the position's eigenvector has in it would win in the end.
+            let sum: f64 = weights.iter().map(|w| w[tangent]).sum();
+            let position: Vec<f64> = weights.iter().map(|w| w[0]).collect();
+            weights.iter_mut().zip(position).for_each(|(w, p)| w[tangent] -= sum * p);
+            let largest = weights.iter().fold(f64::MIN_POSITIVE, |m, w| m.max(w[tangent].abs()));
+            weights.iter_mut().for_each(|w| w[tangent] /= largest);
+        }
+    }
+    weights
+}
+
 impl LimitTable {
-    /// Appends the row of a vertex; `first_point` is the place of the level's points among those of all levels.
-    pub(crate) fn push_vertex(&mut self, level: &Level, vertex: u32, first_point: u32, cache: &mut SharedLimitWeights) {
+    /// Appends the row of a corner; `first_point` is the place of the level's points among those of all levels.
+    pub(crate) fn push_corner(&mut self, level: &Level, corner: u32, first_point: u32, cache: &mut SharedLimitWeights) {
         let first_index = self.indices.len();
-        let indices = &mut self.indices;
-        let rule = mask_points(level, vertex, |point| indices.push(first_point + point));
-        let (slots, n) = match rule {
-            LimitRule::Smooth(n) => (&mut cache.smooth, n),
-            LimitRule::Boundary(n) => (&mut cache.boundary, n),
-            LimitRule::Corner(n) => (&mut cache.corner, n),
+        let vertex = level.origin(corner);
+        let first_weight = if level.tag(vertex).is_plain() {
+            let indices = &mut self.indices;
+            let rule = mask_points(level, vertex, |point| indices.push(first_point + point));
+            let (slots, n) = match rule {
+                LimitRule::Smooth(n) => (&mut cache.smooth, n),
+                LimitRule::Boundary(n) => (&mut cache.boundary, n),
+                LimitRule::Corner(n) => (&mut cache.corner, n),
+                LimitRule::Cone(n) => (&mut cache.cone, n),
+            };
+            shared(slots, n, &mut self.weights, |weights| {
+                mask_weights(rule, |weight| weights.push(weight.map(|w| w as f32)));
+            })
+        } else {
+            let (points, weights) = creased_mask(level, corner);
+            self.indices.extend(points.into_iter().map(|point| first_point + point));
+            let weights: Vec<[f32; 3]> = weights.into_iter().map(|weight| weight.map(|w| w as f32)).collect();
+            let bits = weights.iter().map(|weight| weight.map(f32::to_bits)).collect();
+            let table = &mut self.weights;
+            *cache.interned.entry(bits).or_insert_with(|| {
+                let first = table.len() as u32;
+                table.extend(weights);
+                first
+            })
         };
-        let first_weight = shared(slots, n, &mut self.weights, |weights| {
-            mask_weights(rule, |weight| weights.push(weight.map(|w| w as f32)));
-        });
         let count = (self.indices.len() - first_index) as u32;
         self.rows.push(StencilRow { first_index: first_index as u32, first_weight, count });
     }

@@ -10,7 +10,7 @@ use crate::topology::{Level, Location, NONE};
 /// | | 16-31 | v of the lower corner |
 /// | `flags` | 0-4 | depth: halvings of the Ptex face |
 /// | | 5-9 | level of subdivision |
-/// | | 10-13 | boundary edges: their row of control points is a reflection |
+/// | | 10-13 | boundary edges and infinite creases: their row of control points is a reflection |
 /// | | 14-17 | transition edges: the neighbour was split |
 /// | | 18-21 | leaf edges: the neighbour is an irregular leaf of the last level |
 ///
@@ -80,9 +80,10 @@ const ACROSS: [[usize; 2]; 4] = [[1, 2], [7, 11], [14, 13], [8, 4]];
 /// Place of the point diagonally across corner i.
 const DIAGONAL: [usize; 4] = [0, 3, 15, 12];
 
-/// The control points of a regular face, as vertices of its level, and the mask of its boundary edges.
+/// The control points of a regular face, as vertices of its level, and the mask of its boundary edges: those that are
+/// infinitely sharp, whether or not a face lies beyond.
 ///
-/// Where an edge is on the boundary its outer row is left to [`reflect`]; such entries name corner 0 of the face.
+/// The outer row of such an edge is left to [`reflect`]; its entries name corner 0 of the face.
 pub fn control_points(level: &Level, face: u32) -> ([u32; 16], u8) {
     let edges = level.half_edges(face);
     let mut points = [level.origin(edges.start); 16];
@@ -91,7 +92,7 @@ pub fn control_points(level: &Level, face: u32) -> ([u32; 16], u8) {
         points[CORNERS[i]] = level.origin(half_edge);
         let twin = level.twin(half_edge);
         debug_assert_ne!(twin, NONE, "a drawn face has its whole one-ring");
-        if twin == half_edge {
+        if level.is_infinite(half_edge) {
             boundary |= 1 << i;
             continue;
         }
@@ -101,7 +102,7 @@ pub fn control_points(level: &Level, face: u32) -> ([u32; 16], u8) {
         points[ACROSS[i][0]] = level.origin(across);
         points[ACROSS[i][1]] = level.head(across);
         let diagonal = level.twin(out);
-        if diagonal != out {
+        if !level.is_infinite(out) {
             points[DIAGONAL[i]] = level.origin(level.previous(diagonal));
         }
     }

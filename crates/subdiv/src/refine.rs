@@ -4,9 +4,13 @@
 //! around every core vertex, the child at that vertex of every face there. Then each child of a split face has its
 //! whole one-ring, which is what a bicubic patch or a limit mask reads, and nothing else is made.
 
+use std::collections::HashMap;
+
 use crate::error::Error;
-use crate::mesh::{ControlMesh, MAX_ELEMENTS};
-use crate::topology::{Level, Location, NONE, VertexTag};
+use crate::mesh::{ControlMesh, Creasing, INFINITE_SHARPNESS, MAX_ELEMENTS};
+use crate::rules;
+use crate::sharpness::{SharpnessAtVertex, child_sharpness};
+use crate::topology::{Level, Location, NONE, NonManifold, VertexTag};
 
 /// Deepest level: locations have 16 bits, and single precision points carry no more.
 pub const MAX_LEVEL: u32 = 15;
@@ -65,7 +69,9 @@ impl Refinement {
         if options.max_level > MAX_LEVEL {
             return Err(Error::MaxLevel { asked: options.max_level, max: MAX_LEVEL });
         }
-        refuse_unsupported(mesh)?;
+        if !mesh.edits.is_empty() {
+            return Err(Error::Unsupported { feature: "hierarchical edits" });
+        }
         let has_non_quads = mesh.face_sizes.iter().any(|&n| n != 4);
         let last_level = options.max_level.max(u32::from(has_non_quads));
         let mut refinement = Self {
@@ -103,24 +109,6 @@ impl Refinement {
         }
         flags
     }
-}
-
-fn refuse_unsupported(mesh: &ControlMesh) -> Result<(), Error> {
-    use crate::mesh::TriangleSubdivision::Smooth;
-    let unsupported = |feature| Err(Error::Unsupported { feature });
-    if mesh.creases.iter().any(|crease| crease.sharpness > 0.0) {
-        return unsupported("creases");
-    }
-    if mesh.corners.iter().any(|corner| corner.sharpness > 0.0) {
-        return unsupported("sharp vertices");
-    }
-    if !mesh.edits.is_empty() {
-        return unsupported("hierarchical edits");
-    }
-    if mesh.options.triangles == Smooth && mesh.face_sizes.contains(&3) {
-        return unsupported("smooth triangles");
-    }
-    Ok(())
 }
 
 /// Maps from the elements of a level to those of the next one that they become; [`NONE`] where they do not.
@@ -164,6 +152,7 @@ pub(crate) fn split_level(parent: &Level, faces: &[u32], child_level: u32) -> Re
             }
         }
     }
+    add_chaikin_ends(parent, &mut split, &mut children);
     collect_rings(parent, &mut split, &mut children);
     let half_edges = 4 * split.child_corners.len() as u64;
     if half_edges >= u64::from(MAX_ELEMENTS) {
@@ -176,10 +165,31 @@ pub(crate) fn split_level(parent: &Level, faces: &[u32], child_level: u32) -> Re
     Ok((split, child))
 }
 
+/// Chaikin's rule looks at all creases at both ends of an edge: where one end of a semi-sharp edge is core, the other
+/// must have all its edges too.
+fn add_chaikin_ends(parent: &Level, split: &mut Split, children: &mut Children) {
+    if parent.creasing == Creasing::Uniform || parent.edge_sharpness.is_empty() {
+        return;
+    }
+    for i in 0..split.vertices.len() {
+        let vertex = split.vertices[i];
+        if !parent.tag(vertex).is_semi_sharp() {
+            continue;
+        }
+        for spoke in parent.all_spokes(vertex) {
+            let end = parent.head(spoke);
+            if rules::is_semi_sharp(parent.sharpness(spoke)) && children.vertices[end as usize] == NONE {
+                children.vertices[end as usize] = split.vertices.len() as u32;
+                split.vertices.push(end);
+            }
+        }
+    }
+}
+
 /// Finds the edges and faces around the core, and the children of the faces that only support it.
 fn collect_rings(parent: &Level, split: &mut Split, children: &mut Children) {
     for i in 0..split.vertices.len() {
-        for spoke in parent.spokes(split.vertices[i]) {
+        for spoke in parent.all_spokes(split.vertices[i]) {
             let face = parent.face(spoke);
             if children.faces[spoke as usize] == NONE {
                 children.faces[spoke as usize] = split.child_corners.len() as u32;
@@ -194,8 +204,8 @@ fn collect_rings(parent: &Level, split: &mut Split, children: &mut Children) {
                 if children.edges[half_edge as usize] == NONE {
                     let edge = split.edges.len() as u32;
                     split.edges.push(half_edge);
-                    children.edges[half_edge as usize] = edge;
                     children.edges[parent.twin(half_edge) as usize] = edge;
+                    parent.sharing(&half_edge).iter().for_each(|&same| children.edges[same as usize] = edge);
                 }
             }
         }
@@ -240,22 +250,135 @@ fn tag_children(parent: &Level, split: &Split, children: &Children, child: &mut 
     let count = split.point_count();
     child.tags.reserve_exact(count);
     child.starts.reserve_exact(count);
+    child.creasing = parent.creasing;
     let at = |corner: u32, j: u32| match children.faces[corner as usize] {
         NONE => NONE,
         face => child_half_edge(face, parent, corner, j),
     };
+    let sharpness = ChildSharpness::of(parent, split);
     for &vertex in &split.vertices {
-        child.tags.push(parent.tag(vertex).child());
+        child.tags.push(sharpness.vertex_tag(parent, vertex));
         child.starts.push(at(parent.starts[vertex as usize], 0));
     }
-    for &edge in &split.edges {
-        let boundary = parent.is_boundary(edge);
-        child.tags.push(VertexTag::new(if boundary { 2 } else { 4 }, boundary, false, false));
+    for (&edge, ends) in split.edges.iter().zip(sharpness.edges()) {
+        let shared_count = parent.sharing(&edge).len();
+        let unpaired = parent.is_unpaired(edge);
+        let tag = if shared_count > 1 {
+            VertexTag::non_manifold(false, false)
+        } else {
+            VertexTag::new(if unpaired { 2 } else { 4 }, unpaired, false, false)
+        };
+        let infinite = ends[0] >= INFINITE_SHARPNESS && !unpaired;
+        let semi_sharp = ends.iter().any(|&s| rules::is_semi_sharp(s));
+        child.tags.push(tag.with_sharpness(semi_sharp, infinite));
         // On the boundary the outgoing boundary half-edge runs to the edge's head; inside any will do.
-        child.starts.push(if boundary { at(parent.next(edge), 3) } else { at(edge, 1) });
+        child.starts.push(if unpaired { at(parent.next(edge), 3) } else { at(edge, 1) });
     }
     for &face in &split.faces {
         child.tags.push(VertexTag::new(parent.sides(face), false, false, false));
         child.starts.push(parent.half_edges(face).map(|corner| at(corner, 2)).find(|&h| h != NONE).unwrap_or(NONE));
     }
+    sharpness.hand_down(parent, split, &at, child);
+    child.non_manifold =
+        parent.non_manifold.as_ref().map(|parts| Box::new(split_non_manifold(parts, parent, split, children, &at)));
+}
+
+/// Sharpness of the child edges along the edges of a split: nothing if all are smooth.
+struct ChildSharpness {
+    /// For each edge of the split, of the halves at the origin and at the head of its half-edge.
+    ends: Vec<[f32; 2]>,
+    edge_count: usize,
+}
+
+impl ChildSharpness {
+    fn of(parent: &Level, split: &Split) -> Self {
+        let mut ends = Vec::new();
+        if !parent.edge_sharpness.is_empty() {
+            ends.extend(split.edges.iter().map(|&edge| child_sharpness(parent, edge)));
+        }
+        Self { ends, edge_count: split.edges.len() }
+    }
+
+    fn edges(&self) -> impl Iterator<Item = [f32; 2]> {
+        (0..self.edge_count).map(|i| self.ends.get(i).copied().unwrap_or_default())
+    }
+
+    fn vertex_tag(&self, parent: &Level, vertex: u32) -> VertexTag {
+        let tag = parent.tag(vertex);
+        if !tag.is_semi_sharp() {
+            return tag.child();
+        }
+        let own = rules::less_sharp(parent.vertex_sharpness(vertex));
+        let at_vertex = SharpnessAtVertex::of(parent, vertex);
+        let edges = at_vertex.children(parent.creasing);
+        let semi_sharp = rules::is_semi_sharp(own) || edges.iter().any(|&s| rules::is_semi_sharp(s));
+        tag.child().with_sharpness(semi_sharp, tag.has_infinite_crease())
+    }
+
+    /// Writes the sharpness of the child level's half-edges and vertices; leaves it empty where all is smooth.
+    fn hand_down(&self, parent: &Level, split: &Split, at: &impl Fn(u32, u32) -> u32, child: &mut Level) {
+        if self.ends.iter().any(|ends| ends[0] > 0.0 || ends[1] > 0.0) {
+            child.edge_sharpness = vec![0.0; child.origins.len()];
+            for (&edge, ends) in split.edges.iter().zip(&self.ends) {
+                let twin = parent.twin(edge);
+                // Each half lies in a child on either side.
+                let mut halves =
+                    [(at(edge, 0), ends[0]), (at(parent.next(edge), 3), ends[1]), (NONE, 0.0), (NONE, 0.0)];
+                if twin != edge {
+                    halves[2] = (at(parent.next(twin), 3), ends[0]);
+                    halves[3] = (at(twin, 0), ends[1]);
+                }
+                for (half_edge, sharpness) in halves {
+                    if half_edge != NONE {
+                        child.edge_sharpness[half_edge as usize] = sharpness;
+                    }
+                }
+            }
+        }
+        let own = |&vertex: &u32| {
+            let sharpness = parent.vertex_sharpness.get(vertex as usize).copied().unwrap_or(0.0);
+            rules::less_sharp(sharpness)
+        };
+        if !parent.vertex_sharpness.is_empty() && split.vertices.iter().any(|v| own(v) > 0.0) {
+            child.vertex_sharpness = split.vertices.iter().map(own).collect();
+            child.vertex_sharpness.resize(split.point_count(), 0.0);
+        }
+    }
+}
+
+/// The edges and vertices that stay non-manifold one level down.
+fn split_non_manifold(
+    parts: &NonManifold,
+    parent: &Level,
+    split: &Split,
+    children: &Children,
+    at: &impl Fn(u32, u32) -> u32,
+) -> NonManifold {
+    let mut shared_edges = Vec::new();
+    let mut fans = HashMap::new();
+    let first_edge = split.vertices.len() as u32;
+    for edge in &parts.shared_edges {
+        let place = children.edges[edge[0] as usize];
+        if place == NONE {
+            continue;
+        }
+        let [a, b] = [parent.origin(edge[0]), parent.head(edge[0])];
+        for end in [a, b] {
+            let half = |&h: &u32| if parent.origin(h) == end { at(h, 0) } else { at(parent.next(h), 3) };
+            let halves: Vec<u32> = edge.iter().map(half).filter(|&h| h != NONE).collect();
+            if !halves.is_empty() {
+                shared_edges.push(halves);
+            }
+        }
+        // The middle has a fan of two faces in every face at the edge.
+        let starts = edge.iter().map(|&h| at(parent.next(h), 3)).filter(|&h| h != NONE).collect();
+        fans.insert(first_edge + place, starts);
+    }
+    for (&vertex, starts) in &parts.fans {
+        let child = children.vertices[vertex as usize];
+        if child != NONE {
+            fans.insert(child, starts.iter().map(|&start| at(start, 0)).collect());
+        }
+    }
+    NonManifold::new(shared_edges, fans)
 }

@@ -1,10 +1,13 @@
 //! Catmull-Clark's masks: weights only, no topology.
 //!
 //! Refinement masks are FAS section 3.1 with the face points substituted, so that every weight is one of the level
-//! before. Limit masks: Halstead, Kass and DeRose 1993 (smooth vertices), Biermann, Levin and Zorin 2000 (boundary
-//! tangents).
+//! before. Sharpness: DeRose, Kass and Truong 1998, in OpenSubdiv's reading: where rules change from one level to the
+//! next, the old and the new one are blended by the sharpness that reached zero. Limit masks: Halstead, Kass and DeRose
+//! 1993 (smooth vertices), Biermann, Levin and Zorin 2000 (boundary tangents).
 
 use std::f64::consts::PI;
+
+use crate::mesh::{Creasing, INFINITE_SHARPNESS};
 
 /// Weights of a smooth vertex of valence n whose faces are all quads, for refinement or for its limit position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +59,113 @@ pub fn smooth_tangents(valence: u32, i: u32) -> ([f64; 2], [f64; 2]) {
     let (s0, c0) = angle(i).sin_cos();
     let (s1, c1) = angle(i + 1).sin_cos();
     ([a * c0, a * s0], [c0 + c1, s0 + s1])
+}
+
+/// Rule of a vertex (DeRose et al. 1998).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VertexRule {
+    /// No sharp edge.
+    Smooth,
+    /// One sharp edge: a crease ends here. The smooth rule.
+    Dart,
+    /// Two sharp edges.
+    Crease,
+    /// Sharp itself, or more than two sharp edges.
+    Corner,
+}
+
+/// The rule of a vertex of this sharpness with so many edges of sharpness above zero.
+pub fn vertex_rule(sharpness: f32, sharp_edge_count: usize) -> VertexRule {
+    match sharp_edge_count {
+        _ if sharpness > 0.0 => VertexRule::Corner,
+        0 => VertexRule::Smooth,
+        1 => VertexRule::Dart,
+        2 => VertexRule::Crease,
+        _ => VertexRule::Corner,
+    }
+}
+
+/// Whether a sharpness changes from level to level.
+pub fn is_semi_sharp(sharpness: f32) -> bool {
+    sharpness > 0.0 && sharpness < INFINITE_SHARPNESS
+}
+
+/// Sharpness one level down by the uniform rule: less by one, not below zero; infinite stays infinite.
+pub fn less_sharp(sharpness: f32) -> f32 {
+    if sharpness >= INFINITE_SHARPNESS { INFINITE_SHARPNESS } else { (sharpness - 1.0).max(0.0) }
+}
+
+/// Sharpness of the child at one end of an edge. `others` holds the sharpness of the other edges at that end, in any
+/// order; Chaikin's rule averages the semi-sharp ones (DeRose et al. 1998, section 5).
+pub fn child_edge_sharpness(creasing: Creasing, sharpness: f32, others: impl Iterator<Item = f32>) -> f32 {
+    if creasing == Creasing::Uniform || !is_semi_sharp(sharpness) {
+        return less_sharp(sharpness);
+    }
+    let (mut sum, mut count) = (0.0_f32, 0.0_f32);
+    for other in others.filter(|&other| is_semi_sharp(other)) {
+        sum += other;
+        count += 1.0;
+    }
+    if count == 0.0 { less_sharp(sharpness) } else { (0.75 * sharpness + 0.25 * (sum / count) - 1.0).max(0.0) }
+}
+
+/// The rule of a vertex in one refinement step: `weight` times the rule that its sharpness asks for at the level before,
+/// and the rest of the rule at the level after.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VertexBlend {
+    /// Rule by the sharpness before the step, and where it is a crease the two sharp edges.
+    pub before: (VertexRule, [usize; 2]),
+    /// Rule by the sharpness after the step, likewise.
+    pub after: (VertexRule, [usize; 2]),
+    /// Weight of the rule before.
+    pub weight: f64,
+}
+
+impl VertexBlend {
+    /// The blend for a vertex whose sharpness and whose edges' sharpness go from the first to the second of each pair.
+    pub fn new(vertex: [f32; 2], edges: [&[f32]; 2]) -> Self {
+        let rule = |step: usize| {
+            let mut sharp = (0..).zip(edges[step]).filter(|&(_, &s)| s > 0.0).map(|(i, _)| i);
+            let ends = [sharp.next().unwrap_or(0), sharp.next().unwrap_or(0)];
+            let count = edges[step].iter().filter(|&&s| s > 0.0).count();
+            (vertex_rule(vertex[step], count), ends)
+        };
+        let (before, after) = (rule(0), rule(1));
+        if before.0 == after.0 || matches!(before.0, VertexRule::Smooth | VertexRule::Dart) {
+            return Self { before, after: before, weight: 1.0 };
+        }
+        // The average of the sharpnesses that reach zero in this step.
+        let pairs = edges[0].iter().zip(edges[1]).chain(std::iter::once((&vertex[0], &vertex[1])));
+        let (sum, count) = pairs
+            .filter(|&(&before, &after)| before > 0.0 && after <= 0.0)
+            .fold((0.0_f32, 0.0_f32), |(sum, count), (&before, _)| (sum + before, count + 1.0));
+        let weight = if count == 0.0 { 0.0 } else { (sum / count).min(1.0) };
+        Self { before, after, weight: f64::from(weight) }
+    }
+}
+
+/// Weight of the crease rule (the middle of the edge) for an edge of this sharpness whose children at its two ends have
+/// those; the rest is the smooth rule's. As in OpenSubdiv it is not held below 1 where Chaikin's rule lets an edge
+/// sharper than 1 become smooth.
+pub fn edge_crease_weight(sharpness: f32, children: [f32; 2]) -> f64 {
+    if sharpness <= 0.0 {
+        0.0
+    } else if children.iter().all(|&child| child > 0.0) {
+        1.0
+    } else {
+        f64::from(sharpness)
+    }
+}
+
+/// OpenSubdiv's weight of the centre of a triangle in the rule of its edges, where smooth triangles are asked for
+/// (Stam and Loop 2003 give the reason, OpenSubdiv the number).
+pub const SMOOTH_TRIANGLE_EDGE_FACE: f64 = 0.470;
+
+/// Weight of each face's centre in the rule of a smooth edge between faces of these numbers of sides; the ends share the
+/// rest.
+pub fn edge_face_weight(smooth_triangles: bool, sides: [u32; 2]) -> f64 {
+    let of = |sides: u32| if smooth_triangles && sides == 3 { SMOOTH_TRIANGLE_EDGE_FACE } else { 0.25 };
+    0.5 * (of(sides[0]) + of(sides[1]))
 }
 
 /// Weights of the tangent across a boundary of `face_count` faces (Biermann et al. 2000, appendix).

@@ -4,8 +4,11 @@
 //! The first index of a row is its *origin*: kernels compute p0 + sum w_i (p_i - p0), which keeps the digits of nearby
 //! points and makes a row exact under translation whatever the rounding of its weights.
 
+use std::collections::HashMap;
+
 use crate::refine::Split;
-use crate::rules;
+use crate::rules::{self, VertexRule};
+use crate::sharpness::{SharpnessAtVertex, child_sharpness};
 use crate::topology::Level;
 
 /// Faces of more sides have their points made first, in a dispatch of their own: substituting the centre of an n-gon
@@ -33,6 +36,8 @@ pub struct StencilTable {
     pub indices: Vec<u32>,
     /// Weights; each row's sum to one.
     pub weights: Vec<f32>,
+    /// Where the weights of rows that are not one of the shared rules lie, by their bits.
+    interned: HashMap<Vec<u32>, u32>,
 }
 
 /// Weights that rows of the same rule share, by the rule's parameter.
@@ -130,16 +135,26 @@ impl SplitRows<'_> {
     fn edge(&mut self, half_edge: u32) {
         let (parent, twin) = (self.parent, self.parent.twin(half_edge));
         let ends = [parent.origin(half_edge), parent.head(half_edge)];
+        let sharpness = parent.sharpness(half_edge);
+        let crease = if twin == half_edge {
+            1.0
+        } else if sharpness > 0.0 {
+            rules::edge_crease_weight(sharpness, child_sharpness(parent, half_edge))
+        } else {
+            0.0
+        };
         let first = self.table.indices.len();
-        if twin == half_edge {
+        if crease == 1.0 {
             self.table.indices.extend(ends.map(|v| self.first_point + v));
             let weight = shared_one(&mut self.cache.boundary_edge, &mut self.table.weights, |w| w.extend([0.5, 0.5]));
             return self.table.push_row(first, weight);
         }
         let faces = [parent.face(half_edge), parent.face(twin)];
-        if faces.iter().any(|&face| parent.sides(face) != 4) {
-            ends.iter().for_each(|&v| self.terms.push((self.first_point + v, 0.25)));
-            faces.iter().for_each(|&face| self.add_face_point(face, 0.25));
+        let sides = faces.map(|face| parent.sides(face));
+        if crease != 0.0 || sides != [4, 4] {
+            let face_weight = rules::edge_face_weight(parent.smooth_triangles, sides) * (1.0 - crease);
+            ends.iter().for_each(|&v| self.terms.push((self.first_point + v, 0.5 - face_weight)));
+            faces.iter().for_each(|&face| self.add_face_point(face, face_weight));
             return self.merge_terms(self.first_point + ends[0]);
         }
         let far = [half_edge, twin].map(|h| {
@@ -156,24 +171,20 @@ impl SplitRows<'_> {
 
     fn vertex(&mut self, vertex: u32) {
         let tag = self.parent.tag(vertex);
-        let first = self.table.indices.len();
         if tag.is_corner() {
-            self.table.indices.push(self.first_point + vertex);
-            let weight = shared_one(&mut self.cache.corner, &mut self.table.weights, |w| w.push(1.0));
-            return self.table.push_row(first, weight);
+            return self.corner(vertex);
+        }
+        if !tag.is_plain() {
+            return self.vertex_with_creases(vertex);
         }
         if tag.is_boundary() {
-            let ends = boundary_neighbours(self.parent, vertex);
-            self.table.indices.extend([vertex, ends[0], ends[1]].map(|v| self.first_point + v));
-            let weight = shared_one(&mut self.cache.boundary_vertex, &mut self.table.weights, |weights| {
-                let end = rules::CREASE_END as f32;
-                weights.extend([1.0 - 2.0 * end, end, end]);
-            });
-            return self.table.push_row(first, weight);
+            return self.crease(vertex, boundary_neighbours(self.parent, vertex));
         }
         if !tag.touches_only_quads() {
-            return self.smooth_vertex_beside_n_gons(vertex);
+            self.add_smooth_vertex(vertex, 1.0);
+            return self.merge_terms(self.first_point + vertex);
         }
+        let first = self.table.indices.len();
         self.table.indices.push(self.first_point + vertex);
         for spoke in self.parent.spokes(vertex) {
             let ring = ring_pair(self.parent, spoke);
@@ -188,15 +199,59 @@ impl SplitRows<'_> {
         self.table.push_row(first, weight);
     }
 
-    fn smooth_vertex_beside_n_gons(&mut self, vertex: u32) {
-        let valence = self.parent.spokes(vertex).count();
-        let n = valence as f64;
-        self.terms.push((self.first_point + vertex, (n - 2.0) / n));
-        for spoke in self.parent.spokes(vertex) {
-            self.terms.push((self.first_point + self.parent.head(spoke), 1.0 / (n * n)));
-            self.add_face_point(self.parent.face(spoke), 1.0 / (n * n));
+    fn corner(&mut self, vertex: u32) {
+        let first = self.table.indices.len();
+        self.table.indices.push(self.first_point + vertex);
+        let weight = shared_one(&mut self.cache.corner, &mut self.table.weights, |w| w.push(1.0));
+        self.table.push_row(first, weight);
+    }
+
+    fn crease(&mut self, vertex: u32, ends: [u32; 2]) {
+        let first = self.table.indices.len();
+        self.table.indices.extend([vertex, ends[0], ends[1]].map(|v| self.first_point + v));
+        let weight = shared_one(&mut self.cache.boundary_vertex, &mut self.table.weights, |weights| {
+            let end = rules::CREASE_END as f32;
+            weights.extend([1.0 - 2.0 * end, end, end]);
+        });
+        self.table.push_row(first, weight);
+    }
+
+    fn vertex_with_creases(&mut self, vertex: u32) {
+        let sharpness = SharpnessAtVertex::of(self.parent, vertex);
+        let blend = sharpness.blend(self.parent.creasing);
+        if blend.weight == 1.0 {
+            match blend.before {
+                (VertexRule::Corner, _) => return self.corner(vertex),
+                (VertexRule::Crease, ends) => return self.crease(vertex, ends.map(|end| sharpness.ends[end])),
+                (VertexRule::Smooth | VertexRule::Dart, _) => {}
+            }
+        }
+        for ((rule, ends), weight) in [(blend.before, blend.weight), (blend.after, 1.0 - blend.weight)] {
+            if weight == 0.0 {
+                continue;
+            }
+            match rule {
+                VertexRule::Corner => self.terms.push((self.first_point + vertex, weight)),
+                VertexRule::Crease => {
+                    self.terms.push((self.first_point + vertex, (1.0 - 2.0 * rules::CREASE_END) * weight));
+                    let ends = ends.map(|end| (self.first_point + sharpness.ends[end], rules::CREASE_END * weight));
+                    self.terms.extend(ends);
+                }
+                VertexRule::Smooth | VertexRule::Dart => self.add_smooth_vertex(vertex, weight),
+            }
         }
         self.merge_terms(self.first_point + vertex);
+    }
+
+    /// Adds the smooth vertex rule, times a weight.
+    fn add_smooth_vertex(&mut self, vertex: u32, weight: f64) {
+        let valence = self.parent.spokes(vertex).count();
+        let n = valence as f64;
+        self.terms.push((self.first_point + vertex, weight * (n - 2.0) / n));
+        for spoke in self.parent.spokes(vertex) {
+            self.terms.push((self.first_point + self.parent.head(spoke), weight / (n * n)));
+            self.add_face_point(self.parent.face(spoke), weight / (n * n));
+        }
     }
 
     fn add_face_point(&mut self, face: u32, weight: f64) {
@@ -208,17 +263,29 @@ impl SplitRows<'_> {
         self.terms.extend(vertices.iter().map(|v| (self.first_point + v, each)));
     }
 
-    /// Turns the collected terms into a row with weights of its own; `origin` comes first, each point once.
+    /// Turns the collected terms into a row; `origin` comes first, each point once.
     fn merge_terms(&mut self, origin: u32) {
-        let (first, first_weight) = (self.table.indices.len(), self.table.weights.len() as u32);
-        self.terms.sort_unstable_by_key(|&(point, _)| (point != origin, point));
+        let first = self.table.indices.len();
+        self.terms.sort_by_key(|&(point, _)| (point != origin, point));
+        let mut weights = Vec::new();
         for same in self.terms.chunk_by(|a, b| a.0 == b.0) {
             self.table.indices.push(same[0].0);
-            self.table.weights.push(same.iter().map(|term| term.1).sum::<f64>() as f32);
+            weights.push(same.iter().map(|term| term.1).sum::<f64>() as f32);
         }
         self.terms.clear();
+        let first_weight = intern(&mut self.table.interned, &mut self.table.weights, weights);
         self.table.push_row(first, first_weight);
     }
+}
+
+/// Where these weights lie in a table: where they lie already, or at its end.
+fn intern(interned: &mut HashMap<Vec<u32>, u32>, table: &mut Vec<f32>, weights: Vec<f32>) -> u32 {
+    let bits = weights.iter().map(|weight| weight.to_bits()).collect();
+    *interned.entry(bits).or_insert_with(|| {
+        let first = table.len() as u32;
+        table.extend(weights);
+        first
+    })
 }
 
 /// The two neighbours along the boundary: at the end of the first spoke and at the start of the last face's incoming edge.

@@ -3,6 +3,7 @@
 //! Points of all levels live in one array, the cage's first. Everything here depends on connectivity alone and costs
 //! O(irregular faces x depth); nothing is composed down to the cage.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use crate::limit::{LimitTable, SharedLimitWeights};
@@ -147,19 +148,20 @@ impl Tables {
             first_point: self.levels[limit_level].points.start,
             table: &mut self.limits,
             of_vertex: vec![NONE; refinement.levels[limit_level].tags.len()],
+            of_sector: HashMap::new(),
             cache: SharedLimitWeights::default(),
         };
         for (i, &face) in (0..).zip(leaves) {
             let info =
                 PatchInfo { location: level.locations[face as usize], level: last as u8, ..PatchInfo::default() };
             let corners = if refinement.options.midpoints {
-                let child = |j: u32, corner: usize| limits.level.vertices(4 * i + j)[corner];
+                let child = |j: u32, corner: u32| limits.level.half_edges(4 * i + j).start + corner;
                 let middle = [child(0, 1), child(1, 2), child(2, 3), child(3, 0), child(0, 2)];
                 let corners = [child(0, 0), child(1, 1), child(2, 2), child(3, 3)];
                 self.filling_midpoints.push(middle.map(|v| limits.point(v)));
                 corners
             } else {
-                std::array::from_fn(|corner| level.vertices(face)[corner])
+                std::array::from_fn(|corner| level.half_edges(face).start + corner as u32)
             };
             self.filling.push(FillingQuad { corners: corners.map(|v| limits.point(v)), info });
         }
@@ -168,10 +170,13 @@ impl Tables {
 
 /// Which of a face's edges have an irregular face on the other side, one bit each.
 fn irregular_neighbours(level: &Level, face: u32, irregular: &[bool]) -> u8 {
-    level
-        .half_edges(face)
-        .zip(0..)
-        .fold(0, |mask, (half_edge, i)| mask | u8::from(irregular[level.face(level.twin(half_edge)) as usize]) << i)
+    level.half_edges(face).zip(0..).fold(0, |mask, (half_edge, i)| {
+        let twin = level.twin(half_edge);
+        let beside = |h: u32| irregular[level.face(h) as usize];
+        let is_beside =
+            if twin == half_edge { level.sharing(&half_edge).iter().any(|&h| beside(h)) } else { beside(twin) };
+        mask | u8::from(is_beside) << i
+    })
 }
 
 /// Numbers limit points as they are asked for.
@@ -179,16 +184,25 @@ struct LimitPoints<'a> {
     level: &'a Level,
     first_point: u32,
     table: &'a mut LimitTable,
+    /// Of vertices with one normal.
     of_vertex: Vec<u32>,
+    /// Of the others, by the first spoke of the sector.
+    of_sector: HashMap<u32, u32>,
     cache: SharedLimitWeights,
 }
 
 impl LimitPoints<'_> {
-    fn point(&mut self, vertex: u32) -> u32 {
-        let slot = &mut self.of_vertex[vertex as usize];
+    /// The limit point at a corner: an outgoing half-edge of a vertex.
+    fn point(&mut self, corner: u32) -> u32 {
+        let vertex = self.level.origin(corner);
+        let slot = if self.level.tag(vertex).is_plain() {
+            &mut self.of_vertex[vertex as usize]
+        } else {
+            self.of_sector.entry(self.level.sector(corner).spokes[0]).or_insert(NONE)
+        };
         if *slot == NONE {
             *slot = self.table.rows.len() as u32;
-            self.table.push_vertex(self.level, vertex, self.first_point, &mut self.cache);
+            self.table.push_corner(self.level, corner, self.first_point, &mut self.cache);
         }
         *slot
     }
