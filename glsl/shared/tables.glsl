@@ -11,6 +11,12 @@ struct StencilRow {
     uint count;
 };
 
+// A point that hierarchical edits change: its position is kept and moved, or replaced.
+struct EditTarget {
+    uint point;
+    uint keeps;
+};
+
 // Where a patch lies and what it borders; the bits are those of subdiv's PatchInfo.
 struct PatchInfo {
     uint ptex_face;
@@ -46,6 +52,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Points { vec
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LimitPoints { LimitPoint v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer StencilRows { StencilRow v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Indices { uint v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer EditTargets { EditTarget v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Weights { float v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer LimitWeights { vec3 v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RegularPatches { RegularPatch v[]; };

@@ -3,12 +3,13 @@
 //! The embeddable part of planish: it records into an encoder and submits nothing, apart from uploads and dumps.
 //! A frame is [`PointStages::record`] (cage to points of all levels, limit points) and then [`DrawPasses::record`] (the
 //! regular, transition and patch-filling passes, drawn indirectly from lists). Stages share a stem with their shader:
-//! `subdivide`, `limit`; their CPU twins stand beside them.
+//! `subdivide` (with `edit_points`), `limit`; their CPU twins stand beside them.
 
 pub mod camera;
 pub mod density;
 mod draw;
 mod dump;
+pub mod edit_points;
 mod error;
 mod frame;
 pub mod limit;

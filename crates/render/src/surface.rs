@@ -5,11 +5,13 @@ use std::time::Instant;
 
 use planish_gpu::{Buffer, Device, Encoder};
 use planish_subdiv::ControlMesh;
+use planish_subdiv::mesh::HierarchicalEdit;
 use planish_subdiv::patch::{FillingQuad, PatchInfo};
 use planish_subdiv::refine::{RefineOptions, Refinement};
 use planish_subdiv::tables::Tables;
 
 use crate::density::FACTOR_COUNT;
+use crate::edit_points::targets;
 use crate::error::Error;
 use crate::limit::Limit;
 use crate::lists::{DrawShape, Lists};
@@ -82,6 +84,8 @@ pub(crate) struct Buffers {
     pub rows: Buffer,
     pub indices: Buffer,
     pub weights: Buffer,
+    pub edit_targets: Buffer,
+    pub edit_offsets: Buffer,
     pub limits: Buffer,
     pub limit_rows: Buffer,
     pub limit_indices: Buffer,
@@ -128,6 +132,8 @@ impl Surface {
             rows: table(device, "stencil rows", &rows(&stencils.rows))?,
             indices: table(device, "stencil indices", &stencils.indices)?,
             weights: table(device, "stencil weights", &stencils.weights)?,
+            edit_targets: table(device, "edit targets", &targets(&tables.edits))?,
+            edit_offsets: mapped::<planish_shaders::Points>(device, "edit offsets", tables.edits.len() as u32)?,
             limits: array::<planish_shaders::LimitPoint>(device, "limit points", tables.limit_point_count())?,
             limit_rows: table(device, "limit rows", &rows(&limits.rows))?,
             limit_indices: table(device, "limit indices", &limits.indices)?,
@@ -141,6 +147,7 @@ impl Surface {
         let memory = buffers.memory();
         let surface = Self { desc, tables, lists, draw_ranges, buffers, times, memory };
         surface.set_cage(&mesh.positions)?;
+        surface.set_edits(&mesh.edits)?;
         Ok(surface)
     }
 
@@ -151,6 +158,19 @@ impl Surface {
     pub fn set_cage(&self, positions: &[[f32; 3]]) -> Result<(), Error> {
         if !positions.is_empty() {
             self.buffers.cage.write(0, positions)?;
+        }
+        Ok(())
+    }
+
+    /// Sets the values of the hierarchical edits that set or move points, for all frames submitted from now on: only
+    /// their offsets are uploaded. The edits are the mesh's, in their order, with other values.
+    ///
+    /// # Panics
+    /// If there are fewer edits than the mesh had.
+    pub fn set_edits(&self, edits: &[HierarchicalEdit]) -> Result<(), Error> {
+        let offsets: Vec<[f32; 3]> = self.tables.point_edits(edits).iter().map(|edit| edit.offset).collect();
+        if !offsets.is_empty() {
+            self.buffers.edit_offsets.write(0, &offsets)?;
         }
         Ok(())
     }
@@ -216,13 +236,15 @@ impl PointStages {
 }
 
 impl Buffers {
-    fn all(&self) -> [&Buffer; 13] {
+    fn all(&self) -> [&Buffer; 15] {
         [
             &self.cage,
             &self.points,
             &self.rows,
             &self.indices,
             &self.weights,
+            &self.edit_targets,
+            &self.edit_offsets,
             &self.limits,
             &self.limit_rows,
             &self.limit_indices,

@@ -43,11 +43,17 @@ pub enum Error {
         /// The vertex.
         vertex: u32,
     },
-    /// The mesh has a feature whose rules are not there yet.
-    #[error("the mesh has {feature}, which is not supported yet")]
-    Unsupported {
-        /// Plural name of the feature.
-        feature: &'static str,
+    /// A hierarchical edit's path is too short to name anything.
+    #[error("edit {edit} (from 0) has a path of fewer than two entries")]
+    EditPath {
+        /// The edit.
+        edit: u32,
+    },
+    /// A hierarchical edit's value is no usable number.
+    #[error("edit {edit} (from 0) has a value that is not finite, or beyond {max:e}", max = crate::mesh::MAX_COORDINATE)]
+    EditValue {
+        /// The edit.
+        edit: u32,
     },
     /// A position is NaN, infinite, or so far away that sums of it leave the range of floats.
     #[error("vertex {vertex} (from 0) has a coordinate that is not finite, or beyond {max:e}", max = crate::mesh::MAX_COORDINATE)]

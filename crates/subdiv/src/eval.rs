@@ -4,9 +4,12 @@
 //! the point is a corner, where the limit mask answers. Points are kept relative to an origin of the piece, so that
 //! derivatives do not lose digits however deep it goes.
 
+use std::collections::HashMap;
+
+use crate::edits::PathEdits;
 use crate::error::Error;
 use crate::limit::limit_mask;
-use crate::mesh::ControlMesh;
+use crate::mesh::{ControlMesh, EditOperation};
 use crate::patch::{SurfacePoint, control_points, evaluate, reflect};
 use crate::refine::{Split, split_level};
 use crate::rules::{self, VertexRule};
@@ -19,24 +22,60 @@ const MAX_DEPTH: u32 = 60;
 /// Evaluates the limit surface of one cage.
 #[derive(Debug)]
 pub struct Evaluator {
-    level: Level,
-    points: Vec<[f64; 3]>,
+    /// The levels down to the deepest edit; only the first if there are none.
+    stages: Vec<Stage>,
     /// Base face and side of each Ptex face.
     ptex: Vec<(u32, u32)>,
-    /// The base face that was asked for last, with the pieces made for it.
-    cached: Option<(u32, Piece)>,
+    /// The level and the face that was asked for last, with the pieces made for it.
+    cached: Option<((usize, u32), Piece)>,
+}
+
+/// A level with its points, and what edits made of its faces.
+#[derive(Debug)]
+struct Stage {
+    level: Level,
+    points: Vec<[f64; 3]>,
+    /// First child of each face that an edit of a finer level reaches.
+    first_children: HashMap<u32, u32>,
 }
 
 impl Evaluator {
     /// Prepares a cage; fails as refinement does.
     pub fn new(mesh: &ControlMesh) -> Result<Self, Error> {
-        let level = Level::from_mesh(mesh)?;
         let ptex = (0..)
             .zip(&mesh.face_sizes)
             .flat_map(|(face, &sides)| (0..if sides == 4 { 1 } else { sides }).map(move |side| (face, side)))
             .collect();
-        let points = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
-        Ok(Self { level, points, ptex, cached: None })
+        let mut level = Level::from_mesh(mesh)?;
+        let mut points: Vec<_> = mesh.positions.iter().map(|p| p.map(f64::from)).collect();
+        let mut edits = PathEdits::new(mesh);
+        let mut stages = Vec::new();
+        loop {
+            for (vertex, edit) in edits.apply(&mut level) {
+                let point = &mut points[vertex as usize];
+                match mesh.edits[edit as usize].operation {
+                    EditOperation::SetPosition(p) => *point = p.map(f64::from),
+                    EditOperation::AddPosition(p) => *point = add(*point, p.map(f64::from), 1.0),
+                    _ => {}
+                }
+            }
+            let forced = edits.forced_faces(&level);
+            if forced.is_empty() {
+                stages.push(Stage { level, points, first_children: HashMap::new() });
+                return Ok(Self { stages, ptex, cached: None });
+            }
+            let (split, child) = split_level(&level, &forced, stages.len() as u32 + 1)?;
+            edits.descend(&level, &forced);
+            let child_points = subdivide_points(&level, &split, &points);
+            let mut next = 0;
+            let first_children = forced.iter().map(|&face| {
+                next += level.sides(face);
+                (face, next - level.sides(face))
+            });
+            let first_children = first_children.collect();
+            stages.push(Stage { level, points, first_children });
+            (level, points) = (child, child_points);
+        }
     }
 
     /// Number of Ptex faces.
@@ -48,15 +87,37 @@ impl Evaluator {
     /// boundary interpolation) or does not exist. Derivatives are those along the Ptex face's u and v, except at
     /// irregular corners, where they are two vectors that span the tangent plane.
     pub fn evaluate(&mut self, ptex_face: u32, u: f64, v: f64) -> Option<SurfacePoint> {
-        let &(face, side) = self.ptex.get(ptex_face as usize)?;
-        if !self.level.is_drawn(face) {
+        let &(mut face, side) = self.ptex.get(ptex_face as usize)?;
+        let (mut k, mut u, mut v) = (0, u, v);
+        while let Some(&first) = self.stages[k].first_children.get(&face) {
+            if self.stages[k].level.sides(face) == 4 {
+                let (i, low_u, low_v) = quarter(u, v);
+                (face, u, v) = (first + i, 2.0 * (u - low_u), 2.0 * (v - low_v));
+            } else {
+                face = first + side;
+            }
+            k += 1;
+        }
+        let stage = &self.stages[k];
+        if !stage.level.is_drawn(face) {
             return None;
         }
-        if self.cached.as_ref().is_none_or(|(cached, _)| *cached != face) {
-            self.cached = Some((face, Piece::new(self.level.clone(), self.points.clone(), face, [0.0; 3], 0)));
+        if self.cached.as_ref().is_none_or(|(cached, _)| *cached != (k, face)) {
+            let piece = Piece::new(stage.level.clone(), stage.points.clone(), face, [0.0; 3], k as u32);
+            self.cached = Some(((k, face), piece));
         }
         let (_, piece) = self.cached.as_mut()?;
         Some(if piece.level.sides(face) == 4 { piece.evaluate(u, v) } else { piece.child(side).evaluate(u, v) })
+    }
+}
+
+/// The quarter of the unit square that holds a point, and its lower corner.
+fn quarter(u: f64, v: f64) -> (u32, f64, f64) {
+    match (u > 0.5, v > 0.5) {
+        (false, false) => (0, 0.0, 0.0),
+        (true, false) => (1, 0.5, 0.0),
+        (true, true) => (2, 0.5, 0.5),
+        (false, true) => (3, 0.0, 0.5),
     }
 }
 
@@ -110,12 +171,7 @@ impl Piece {
         if let Some(corner) = corner {
             return self.placed(self.limit(corner), 1.0);
         }
-        let (i, low_u, low_v) = match (u > 0.5, v > 0.5) {
-            (false, false) => (0, 0.0, 0.0),
-            (true, false) => (1, 0.5, 0.0),
-            (true, true) => (2, 0.5, 0.5),
-            (false, true) => (3, 0.0, 0.5),
-        };
+        let (i, low_u, low_v) = quarter(u, v);
         self.child(i).evaluate(2.0 * (u - low_u), 2.0 * (v - low_v))
     }
 
@@ -177,7 +233,7 @@ pub fn subdivide_points(parent: &Level, split: &Split, points: &[[f64; 3]]) -> V
             }
             VertexRule::Smooth | VertexRule::Dart => smooth(vertex),
         };
-        let blend = sharpness.blend(parent.creasing);
+        let blend = sharpness.blend(parent.options.creasing);
         let (before, after) = (by_rule(blend.before), by_rule(blend.after));
         add(before.map(|c| c * blend.weight), after, 1.0 - blend.weight)
     };
@@ -188,7 +244,7 @@ pub fn subdivide_points(parent: &Level, split: &Split, points: &[[f64; 3]]) -> V
             return middle;
         }
         let faces = [half_edge, parent.twin(half_edge)].map(|h| parent.face(h));
-        let weight = rules::edge_face_weight(parent.smooth_triangles, faces.map(|face| parent.sides(face)));
+        let weight = rules::edge_face_weight(parent.options.triangles, faces.map(|face| parent.sides(face)));
         let smooth =
             faces.iter().fold(middle.map(|c| c * (1.0 - 2.0 * weight)), |sum, &face| add(sum, centre(face), weight));
         let crease = rules::edge_crease_weight(parent.sharpness(half_edge), child_sharpness(parent, half_edge));

@@ -3,6 +3,7 @@
 //! Layers, each using only those before it: [`mesh`] (the cage), [`rules`] (masks, no topology), [`topology`] (one level
 //! as half-edges), [`refine`] (feature-adaptive levels), then [`tables`] (what the GPU reads) and [`eval`] (f64 evaluator).
 
+pub mod edits;
 pub mod error;
 pub mod eval;
 pub mod limit;

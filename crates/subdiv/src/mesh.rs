@@ -162,7 +162,8 @@ impl ControlMesh {
         self.face_sizes.iter().map(|&n| if n == 4 { 1 } else { u64::from(n) }).sum()
     }
 
-    /// Checks what refinement relies on: indices in range, at least three different vertices a face, finite positions.
+    /// Checks what refinement relies on: indices in range, at least three different vertices a face, finite positions,
+    /// edits of what exists.
     pub fn validate(&self) -> Result<(), Error> {
         if self.face_sizes.is_empty() {
             return Err(Error::Empty);
@@ -202,6 +203,6 @@ impl ControlMesh {
         for vertex in self.creases.iter().flat_map(|c| c.vertices).chain(self.corners.iter().map(|c| c.vertex)) {
             in_range("vertex", vertex, self.positions.len())?;
         }
-        Ok(())
+        crate::edits::validate(self)
     }
 }

@@ -6,8 +6,9 @@
 
 use std::collections::HashMap;
 
+use crate::edits::{self, PathEdits};
 use crate::error::Error;
-use crate::mesh::{ControlMesh, Creasing, INFINITE_SHARPNESS, MAX_ELEMENTS};
+use crate::mesh::{ControlMesh, Creasing, HierarchicalEdit, INFINITE_SHARPNESS, MAX_ELEMENTS};
 use crate::rules;
 use crate::sharpness::{SharpnessAtVertex, child_sharpness};
 use crate::topology::{Level, Location, NONE, NonManifold, VertexTag};
@@ -56,6 +57,10 @@ pub struct Refinement {
     pub splits: Vec<Split>,
     /// `split_faces[k]` are the faces of level k that were split; of the last level, the irregular leaves.
     pub irregular_faces: Vec<Vec<u32>>,
+    /// The mesh's hierarchical edits.
+    pub edits: Vec<HierarchicalEdit>,
+    /// For each level the vertices that hierarchical edits move, and the number of the edit, in the edits' order.
+    pub moved_points: Vec<Vec<(u32, u32)>>,
     /// The level at which irregular faces are left.
     pub last_level: u32,
     /// What was asked for.
@@ -64,35 +69,39 @@ pub struct Refinement {
 
 impl Refinement {
     /// Refines a cage. A mesh with faces that are no quads is split once at least: their children are quads, and only
-    /// then a limit mask exists at their corners.
+    /// then a limit mask exists at their corners. One with hierarchical edits is split down to the deepest of them.
     pub fn new(mesh: &ControlMesh, options: RefineOptions) -> Result<Self, Error> {
         if options.max_level > MAX_LEVEL {
             return Err(Error::MaxLevel { asked: options.max_level, max: MAX_LEVEL });
         }
-        if !mesh.edits.is_empty() {
-            return Err(Error::Unsupported { feature: "hierarchical edits" });
-        }
+        let mut levels = vec![Level::from_mesh(mesh)?];
         let has_non_quads = mesh.face_sizes.iter().any(|&n| n != 4);
-        let last_level = options.max_level.max(u32::from(has_non_quads));
-        let mut refinement = Self {
-            levels: vec![Level::from_mesh(mesh)?],
-            splits: Vec::new(),
-            irregular_faces: Vec::new(),
-            last_level,
-            options,
-        };
+        let last_level = options.max_level.max(u32::from(has_non_quads)).max(edits::deepest_level(mesh));
+        let mut path_edits = PathEdits::new(mesh);
+        let mut moved_points = vec![path_edits.apply(&mut levels[0])];
+        let (mut splits, mut irregular_faces) = (Vec::new(), Vec::new());
         for k in 0..=last_level {
-            let level = &refinement.levels[k as usize];
-            let irregular: Vec<u32> = (0..level.drawn_count)
+            let level = &levels[k as usize];
+            let mut irregular: Vec<u32> = (0..level.drawn_count)
                 .filter(|&face| level.is_drawn(face) && (options.uniform || !level.is_regular(face)))
                 .collect();
-            if k < last_level || options.midpoints {
-                let (split, child) = split_level(level, &irregular, k + 1)?;
-                refinement.splits.push(split);
-                refinement.levels.push(child);
+            let forced = path_edits.forced_faces(level);
+            if !forced.is_empty() {
+                irregular.extend(forced);
+                irregular.sort_unstable();
+                irregular.dedup();
             }
-            refinement.irregular_faces.push(irregular);
+            if k < last_level || options.midpoints {
+                let (split, mut child) = split_level(level, &irregular, k + 1)?;
+                path_edits.descend(level, &irregular);
+                moved_points.push(path_edits.apply(&mut child));
+                splits.push(split);
+                levels.push(child);
+            }
+            irregular_faces.push(irregular);
         }
+        let refinement =
+            Self { levels, splits, irregular_faces, edits: mesh.edits.clone(), moved_points, last_level, options };
         // Rows average fewer than 8 indices: what the tables number stays within 32 bits.
         let count = refinement.splits.iter().map(|split| split.point_count() as u64).sum::<u64>();
         if 8 * count >= u64::from(u32::MAX) {
@@ -161,6 +170,10 @@ pub(crate) fn split_level(parent: &Level, faces: &[u32], child_level: u32) -> Re
     let mut child = connect_children(parent, &split, &children);
     child.drawn_count = locations.len() as u32;
     child.locations = locations;
+    if faces.iter().any(|&face| !parent.is_drawn(face)) {
+        let hidden = |&face: &u32| std::iter::repeat_n(!parent.is_drawn(face), parent.sides(face) as usize);
+        child.hidden = faces.iter().flat_map(hidden).collect();
+    }
     tag_children(parent, &split, &children, &mut child);
     Ok((split, child))
 }
@@ -168,7 +181,7 @@ pub(crate) fn split_level(parent: &Level, faces: &[u32], child_level: u32) -> Re
 /// Chaikin's rule looks at all creases at both ends of an edge: where one end of a semi-sharp edge is core, the other
 /// must have all its edges too.
 fn add_chaikin_ends(parent: &Level, split: &mut Split, children: &mut Children) {
-    if parent.creasing == Creasing::Uniform || parent.edge_sharpness.is_empty() {
+    if parent.options.creasing == Creasing::Uniform || parent.edge_sharpness.is_empty() {
         return;
     }
     for i in 0..split.vertices.len() {
@@ -250,7 +263,7 @@ fn tag_children(parent: &Level, split: &Split, children: &Children, child: &mut 
     let count = split.point_count();
     child.tags.reserve_exact(count);
     child.starts.reserve_exact(count);
-    child.creasing = parent.creasing;
+    child.options = parent.options;
     let at = |corner: u32, j: u32| match children.faces[corner as usize] {
         NONE => NONE,
         face => child_half_edge(face, parent, corner, j),
@@ -310,7 +323,7 @@ impl ChildSharpness {
         }
         let own = rules::less_sharp(parent.vertex_sharpness(vertex));
         let at_vertex = SharpnessAtVertex::of(parent, vertex);
-        let edges = at_vertex.children(parent.creasing);
+        let edges = at_vertex.children(parent.options.creasing);
         let semi_sharp = rules::is_semi_sharp(own) || edges.iter().any(|&s| rules::is_semi_sharp(s));
         tag.child().with_sharpness(semi_sharp, tag.has_infinite_crease())
     }

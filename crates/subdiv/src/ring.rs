@@ -67,7 +67,7 @@ impl Ring {
 
     /// The steps until nothing at the vertex is semi-sharp, and the rule from then on.
     pub fn decay(&self, level: &Level, sharpness: SharpnessAtVertex) -> (Vec<Step>, VertexBlend) {
-        let creasing = level.creasing;
+        let creasing = level.options.creasing;
         let vertex = self.points[0];
         // The other semi-sharp edges at the far end of each edge; only Chaikin's rule looks at them.
         let mut beyond: Vec<Vec<f32>> = level

@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-use crate::mesh::{Creasing, INFINITE_SHARPNESS};
+use crate::mesh::{Creasing, INFINITE_SHARPNESS, TriangleSubdivision};
 
 /// Weights of a smooth vertex of valence n whose faces are all quads, for refinement or for its limit position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -163,8 +163,9 @@ pub const SMOOTH_TRIANGLE_EDGE_FACE: f64 = 0.470;
 
 /// Weight of each face's centre in the rule of a smooth edge between faces of these numbers of sides; the ends share the
 /// rest.
-pub fn edge_face_weight(smooth_triangles: bool, sides: [u32; 2]) -> f64 {
-    let of = |sides: u32| if smooth_triangles && sides == 3 { SMOOTH_TRIANGLE_EDGE_FACE } else { 0.25 };
+pub fn edge_face_weight(triangles: TriangleSubdivision, sides: [u32; 2]) -> f64 {
+    let smooth = triangles == TriangleSubdivision::Smooth;
+    let of = |sides: u32| if smooth && sides == 3 { SMOOTH_TRIANGLE_EDGE_FACE } else { 0.25 };
     0.5 * (of(sides[0]) + of(sides[1]))
 }
 

@@ -50,7 +50,7 @@ pub(crate) fn child_sharpness(level: &Level, half_edge: u32) -> [f32; 2] {
     }
     let sharpness = level.sharpness(half_edge);
     [level.origin(half_edge), level.head(half_edge)]
-        .map(|end| child_edge_sharpness(level.creasing, sharpness, others_at(level, half_edge, end)))
+        .map(|end| child_edge_sharpness(level.options.creasing, sharpness, others_at(level, half_edge, end)))
 }
 
 /// Sharpness of the other edges between two faces at an end of a half-edge's edge.

@@ -152,7 +152,7 @@ impl SplitRows<'_> {
         let faces = [parent.face(half_edge), parent.face(twin)];
         let sides = faces.map(|face| parent.sides(face));
         if crease != 0.0 || sides != [4, 4] {
-            let face_weight = rules::edge_face_weight(parent.smooth_triangles, sides) * (1.0 - crease);
+            let face_weight = rules::edge_face_weight(parent.options.triangles, sides) * (1.0 - crease);
             ends.iter().for_each(|&v| self.terms.push((self.first_point + v, 0.5 - face_weight)));
             faces.iter().for_each(|&face| self.add_face_point(face, face_weight));
             return self.merge_terms(self.first_point + ends[0]);
@@ -218,7 +218,7 @@ impl SplitRows<'_> {
 
     fn vertex_with_creases(&mut self, vertex: u32) {
         let sharpness = SharpnessAtVertex::of(self.parent, vertex);
-        let blend = sharpness.blend(self.parent.creasing);
+        let blend = sharpness.blend(self.parent.options.creasing);
         if blend.weight == 1.0 {
             match blend.before {
                 (VertexRule::Corner, _) => return self.corner(vertex),

@@ -6,7 +6,9 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use crate::edits::{PointEdit, combine};
 use crate::limit::{LimitTable, SharedLimitWeights};
+use crate::mesh::HierarchicalEdit;
 use crate::patch::{FillingQuad, PatchInfo, RegularPatch, control_points};
 use crate::refine::Refinement;
 use crate::stencil::{SharedWeights, StencilTable, has_large_faces};
@@ -17,6 +19,8 @@ use crate::topology::{Level, NONE};
 pub struct LevelPoints {
     /// Places among the points of all levels.
     pub points: Range<u32>,
+    /// Edits of them, applied before the next level is made: a part of [`Tables::edits`].
+    pub edits: Range<u32>,
     /// The rows that make them, in dispatches that depend on each other: one, or two where n-gons of many sides have
     /// their face points made first. Row r makes point r + (number of cage points). Empty for the cage.
     pub dispatches: Vec<Range<u32>>,
@@ -55,6 +59,10 @@ pub struct Tables {
     pub counts: Vec<PatchCounts>,
     /// Level of the irregular leaves.
     pub last_level: u32,
+    /// Edits of points of all levels, level by level.
+    pub edits: Vec<PointEdit>,
+    /// For each of them the hierarchical edits that it combines: numbers of the mesh's edits, in their order.
+    edit_sources: Vec<Vec<u32>>,
 }
 
 impl Tables {
@@ -63,11 +71,12 @@ impl Tables {
         let cage_point_count = refinement.levels[0].tags.len() as u32;
         let mut tables = Self {
             cage_point_count,
-            levels: vec![LevelPoints { points: 0..cage_point_count, dispatches: Vec::new() }],
+            levels: vec![LevelPoints { points: 0..cage_point_count, ..LevelPoints::default() }],
             last_level: refinement.last_level,
             ..Self::default()
         };
         tables.add_stencils(refinement);
+        tables.add_edits(refinement);
         for k in 0..=refinement.last_level {
             tables.add_patches(refinement, k);
         }
@@ -110,8 +119,31 @@ impl Tables {
             } else {
                 vec![rows]
             };
-            self.levels.push(LevelPoints { points: first_child..end, dispatches });
+            self.levels.push(LevelPoints { points: first_child..end, dispatches, edits: 0..0 });
         }
+    }
+
+    fn add_edits(&mut self, refinement: &Refinement) {
+        for (level, moved) in self.levels.iter_mut().zip(&refinement.moved_points) {
+            let first = self.edit_sources.len();
+            let mut moved = moved.clone();
+            // By point, and for each point in the edits' order.
+            moved.sort_by_key(|&(vertex, _)| vertex);
+            for same in moved.chunk_by(|a, b| a.0 == b.0) {
+                self.edits.push(PointEdit { point: level.points.start + same[0].0, keep: 1.0, offset: [0.0; 3] });
+                self.edit_sources.push(same.iter().map(|&(_, edit)| edit).collect());
+            }
+            level.edits = first as u32..self.edit_sources.len() as u32;
+        }
+        self.edits = self.point_edits(&refinement.edits);
+    }
+
+    /// The edits of points for the mesh's edits with other values: same paths, in the same order.
+    pub fn point_edits(&self, edits: &[HierarchicalEdit]) -> Vec<PointEdit> {
+        let combined = |(row, sources): (&PointEdit, &Vec<u32>)| {
+            combine(row.point, sources.iter().map(|&source| edits[source as usize].operation))
+        };
+        self.edits.iter().zip(&self.edit_sources).map(combined).collect()
     }
 
     fn add_patches(&mut self, refinement: &Refinement, k: u32) {

@@ -8,7 +8,7 @@
 use std::collections::HashMap;
 
 use crate::error::Error;
-use crate::mesh::{BoundaryInterpolation, ControlMesh, Creasing, INFINITE_SHARPNESS, TriangleSubdivision};
+use crate::mesh::{BoundaryInterpolation, ControlMesh, INFINITE_SHARPNESS, MeshOptions};
 use crate::rules::is_semi_sharp;
 
 /// "There is none", for any index.
@@ -171,10 +171,8 @@ pub struct Level {
     pub(crate) edge_sharpness: Vec<f32>,
     /// Sharpness of each vertex that is not infinitely sharp; empty if all are smooth.
     pub(crate) vertex_sharpness: Vec<f32>,
-    /// How sharpness goes from level to level.
-    pub(crate) creasing: Creasing,
-    /// Edges of triangles have OpenSubdiv's smoother weights (level 0 only).
-    pub(crate) smooth_triangles: bool,
+    /// The mesh's.
+    pub(crate) options: MeshOptions,
     /// Faces `0..drawn_count` belong to the surface, unless `hidden` says otherwise; the rest only support them.
     pub drawn_count: u32,
     /// Faces that are holes or have no limit surface; empty if there are none.
@@ -195,8 +193,7 @@ impl Level {
             non_manifold: None,
             edge_sharpness: Vec::new(),
             vertex_sharpness: Vec::new(),
-            creasing: Creasing::Uniform,
-            smooth_triangles: false,
+            options: MeshOptions::default(),
             drawn_count: 0,
             hidden: Vec::new(),
             locations: Vec::new(),
@@ -210,8 +207,7 @@ impl Level {
         if mesh.face_sizes.iter().any(|&n| n != 4) {
             level.faces = mixed_faces(&mesh.face_sizes);
         }
-        level.creasing = mesh.options.creasing;
-        level.smooth_triangles = mesh.options.triangles == TriangleSubdivision::Smooth;
+        level.options = mesh.options;
         let vertex_count = mesh.positions.len();
         let shared_edges = pair_half_edges(&mut level, vertex_count);
         level.find_fans(vertex_count, shared_edges);
@@ -548,35 +544,36 @@ impl Level {
 
     fn tag_vertices(&mut self, mesh: &ControlMesh) {
         self.tags = vec![VertexTag::default(); mesh.positions.len()];
-        let interpolates_corners = mesh.options.boundary == BoundaryInterpolation::EdgeAndCorner;
         for vertex in 0..mesh.positions.len() as u32 {
-            if self.starts[vertex as usize] == NONE {
-                continue;
-            }
-            let (mut face_count, mut beside_non_quad) = (0, false);
-            for spoke in self.all_spokes(vertex) {
-                face_count += 1;
-                beside_non_quad |= self.sides(self.face(spoke)) != 4;
-            }
-            let given = self.vertex_sharpness.get(vertex as usize).copied().unwrap_or(0.0);
-            let topological_corner = face_count == 1 && interpolates_corners;
-            let corner = given >= INFINITE_SHARPNESS || topological_corner;
-            let is_manifold = self.non_manifold.as_ref().is_none_or(|parts| !parts.fans.contains_key(&vertex));
-            let tag = if is_manifold {
-                let boundary = self.is_unpaired(self.starts[vertex as usize]);
-                VertexTag::new(face_count, boundary, corner, beside_non_quad)
-            } else {
-                VertexTag::non_manifold(corner || !self.is_non_manifold_crease(vertex, face_count), beside_non_quad)
-            };
-            self.tags[vertex as usize] = tag;
-            if !self.edge_sharpness.is_empty() || given > 0.0 {
-                self.tags[vertex as usize] = self.tag_with_sharpness(vertex, tag);
+            if self.starts[vertex as usize] != NONE {
+                self.tags[vertex as usize] = self.vertex_tag(vertex);
             }
         }
     }
 
+    /// The tag of a vertex all of whose faces are in this level.
+    pub(crate) fn vertex_tag(&self, vertex: u32) -> VertexTag {
+        let (mut face_count, mut beside_non_quad) = (0, false);
+        for spoke in self.all_spokes(vertex) {
+            face_count += 1;
+            beside_non_quad |= self.sides(self.face(spoke)) != 4;
+        }
+        let given = self.vertex_sharpness.get(vertex as usize).copied().unwrap_or(0.0);
+        let topological_corner = face_count == 1 && self.options.boundary == BoundaryInterpolation::EdgeAndCorner;
+        let corner = given >= INFINITE_SHARPNESS || topological_corner;
+        let is_manifold = self.non_manifold.as_ref().is_none_or(|parts| !parts.fans.contains_key(&vertex));
+        let tag = if is_manifold {
+            let boundary = self.is_unpaired(self.starts[vertex as usize]);
+            VertexTag::new(face_count, boundary, corner, beside_non_quad)
+        } else {
+            VertexTag::non_manifold(corner || !self.is_non_manifold_crease(vertex, face_count), beside_non_quad)
+        };
+        let has_sharpness = !self.edge_sharpness.is_empty() || given > 0.0;
+        if has_sharpness { self.tag_with_sharpness(vertex, tag) } else { tag }
+    }
+
     /// The tag of a vertex with what the sharpness at it adds.
-    pub(crate) fn tag_with_sharpness(&self, vertex: u32, tag: VertexTag) -> VertexTag {
+    fn tag_with_sharpness(&self, vertex: u32, tag: VertexTag) -> VertexTag {
         let own = self.vertex_sharpness.get(vertex as usize).copied().unwrap_or(0.0);
         let (mut semi_sharp, mut infinite) = (is_semi_sharp(own) && !tag.is_corner(), false);
         for spoke in self.all_spokes(vertex).filter(|&spoke| !self.is_unpaired(spoke)) {
