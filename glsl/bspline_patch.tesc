@@ -4,6 +4,7 @@
 #include "shared/frame.glsl"
 #include "shared/spacing.glsl"
 
+layout(constant_id = 2) const bool CREASE = false; // some patches have a semi-sharp crease
 layout(vertices = 16) out;
 layout(location = 0) in uint patch_index[];
 layout(location = 0) out vec3 control_point[];
@@ -11,6 +12,7 @@ layout(location = 1) patch out vec4 low_factors;  // spaced factor of each edge,
 layout(location = 2) patch out vec4 high_factors; // of the other half where the neighbour was split, else 0
 layout(location = 3) patch out float inner_factor;
 layout(location = 4) patch out uvec4 patch_words; // its PatchInfo, and its number
+layout(location = 5) patch out float patch_sharpness; // of the semi-sharp crease along one of its edges, or 0
 
 vec3 point(uint patch_place, uint i)
 {
@@ -55,6 +57,7 @@ void main()
         return;
     }
     patch_words = uvec4(info.ptex_face, info.corner, info.flags, push.first_patch_id + patch_place);
+    patch_sharpness = CREASE ? push.patches.v[patch_place].sharpness : 0.0;
     uint level = patch_level(info);
     float factor = spaced_factor(push.frame.v.factors[level]);
     float finer = spaced_factor(push.frame.v.factors[level + 1]);

@@ -4,15 +4,18 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shared/spacing.glsl"
 #include "shared/bspline.glsl"
+#include "shared/crease.glsl"
 #include "shared/surface.glsl"
 
 layout(constant_id = 1) const bool TRANSITION = false;
+layout(constant_id = 2) const bool CREASE = false; // some patches have a semi-sharp crease
 layout(quads, equal_spacing, ccw) in;
 layout(location = 0) in vec3 control_point[];
 layout(location = 1) patch in vec4 low_factors;
 layout(location = 2) patch in vec4 high_factors;
 layout(location = 3) patch in float inner_factor;
 layout(location = 4) patch in uvec4 patch_words;
+layout(location = 5) patch in float patch_sharpness;
 
 Parameter parameter(float x, float low, float high)
 {
@@ -56,6 +59,15 @@ void main()
     precise vec4 dv;
     cubic_basis(u.t, u.s, nu, du);
     cubic_basis(v.t, v.s, nv, dv);
+    if (CREASE && patch_sharpness > 0.0) {
+        uint crease = patch_crease(PatchInfo(patch_words.x, patch_words.y, patch_words.z));
+        switch (crease) {
+        case 1: crease_basis(v.t, patch_sharpness, nv, dv); break;
+        case 2: reversed_crease_basis(u.s, patch_sharpness, nu, du); break;
+        case 4: reversed_crease_basis(v.s, patch_sharpness, nv, dv); break;
+        case 8: crease_basis(u.t, patch_sharpness, nu, du); break;
+        }
+    }
     precise vec3 column[4];
     precise vec3 slope[4];
     for (int i = 0; i < 4; ++i) {

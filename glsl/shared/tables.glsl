@@ -24,10 +24,11 @@ struct PatchInfo {
     uint flags;
 };
 
-// 16 control points, row by row; rows that the boundary mask names are reflections.
+// 16 control points, row by row; rows that the boundary mask names are reflections. Sharpness of the crease edge, or 0.
 struct RegularPatch {
     uint points[16];
     PatchInfo info;
+    float sharpness;
 };
 
 // Limit points at (0,0), (1,0), (1,1), (0,1).
@@ -64,6 +65,7 @@ uint patch_level(PatchInfo info) { return bitfieldExtract(info.flags, 5, 5); }
 uint patch_boundary(PatchInfo info) { return bitfieldExtract(info.flags, 10, 4); }
 uint patch_transition(PatchInfo info) { return bitfieldExtract(info.flags, 14, 4); }
 uint patch_leaf(PatchInfo info) { return bitfieldExtract(info.flags, 18, 4); }
+uint patch_crease(PatchInfo info) { return bitfieldExtract(info.flags, 22, 4); }
 
 // (u, v) of a patch's own domain in the domain of its Ptex face.
 vec2 ptex_uv(PatchInfo info, vec2 uv)

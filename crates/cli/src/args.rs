@@ -12,7 +12,7 @@ use planish_render::{Density, SurfaceMethod};
 
 use crate::aov::AovList;
 use crate::frames::FrameRange;
-use crate::names::{MethodName, SchemeName, SpacingName, ViewName, name_of};
+use crate::names::{CreasePatchesName, MethodName, SchemeName, SpacingName, ViewName, name_of};
 use crate::values::{self, FrameRate, MAX_LEVEL};
 
 /// Level that irregularities are isolated to at most.
@@ -140,6 +140,9 @@ pub struct BenchArguments {
     /// Time fas alone at these tess factors instead
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = values::tess_factor, conflicts_with_all = ["levels", "cpu"])]
     pub tess: Vec<f32>,
+    /// Time fas at these tess factors with each kind of crease patches
+    #[arg(long, requires = "tess")]
+    pub creases: bool,
     /// Time the building of tables for these levels instead, on one thread of the CPU; needs no device
     #[arg(long)]
     pub cpu: bool,
@@ -197,6 +200,9 @@ pub struct SurfaceArguments {
     /// Spacing of tessellated points
     #[arg(long, value_enum, default_value_t = SpacingName::FractionalOdd)]
     pub spacing: SpacingName,
+    /// Creases that are patches of their own, instead of being refined to the last level
+    #[arg(long, value_enum, default_value_t = CreasePatchesName::Infinite)]
+    pub crease_patches: CreasePatchesName,
     /// Trade bitwise equal seams for speed
     #[arg(long)]
     pub no_watertight: bool,

@@ -35,7 +35,7 @@ pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
     let device = open_device(&arguments.device, console)?;
     let mut session = Session::new(&device, &cage, &plan, console)?;
     let start = Instant::now();
-    let passes = DumpPasses::new(&device, plan.desc.method, plan.desc.spacing)?;
+    let passes = DumpPasses::new(&device, &plan.desc)?;
     session.pipelines_ms += milliseconds(start);
     let dump = Dump { points: session.record_points()?, passes, session: &session, positions: &cage.mesh().positions };
 

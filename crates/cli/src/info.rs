@@ -39,7 +39,8 @@ fn surface_desc(arguments: &InfoArguments, cage: &Cage) -> Result<SurfaceDesc> {
     match surface.asked_max_level {
         Some(level) if surface.tess.is_none() && surface.edge_pixels.is_none() => {
             surface.check_available()?;
-            Ok(SurfaceDesc { method: surface.method()?, spacing: surface.spacing.into(), level })
+            let crease_patches = surface.crease_patches.into();
+            Ok(SurfaceDesc { method: surface.method()?, spacing: surface.spacing.into(), level, crease_patches })
         }
         _ => Ok(Plan::unseen(cage, surface, &arguments.view)?.desc),
     }

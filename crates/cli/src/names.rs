@@ -2,6 +2,7 @@
 
 use clap::ValueEnum;
 use planish_render::{Spacing, View};
+use planish_subdiv::refine::CreasePatches;
 
 /// Surface methods by name.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -35,6 +36,27 @@ impl From<SpacingName> for Spacing {
             SpacingName::Equal => Self::Equal,
             SpacingName::FractionalOdd => Self::FractionalOdd,
             SpacingName::FractionalEven => Self::FractionalEven,
+        }
+    }
+}
+
+/// Kinds of crease patches by name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum CreasePatchesName {
+    /// All creases are refined to the last level
+    None,
+    /// Infinitely sharp creases bound regular patches
+    Infinite,
+    /// Semi-sharp creases along an edge of a regular patch, too
+    Single,
+}
+
+impl From<CreasePatchesName> for CreasePatches {
+    fn from(name: CreasePatchesName) -> Self {
+        match name {
+            CreasePatchesName::None => Self::None,
+            CreasePatchesName::Infinite => Self::Infinite,
+            CreasePatchesName::Single => Self::Single,
         }
     }
 }

@@ -51,7 +51,8 @@ impl Plan {
         let frame_camera = frame_camera(&camera, view.size);
         let tess_factor = tess_factor(cage.mesh(), &frame_camera, surface.density())?;
         let level = isolation_level(tess_factor, surface.max_level());
-        let desc = SurfaceDesc { method, spacing: surface.spacing.into(), level };
+        let crease_patches = surface.crease_patches.into();
+        let desc = SurfaceDesc { method, spacing: surface.spacing.into(), level, crease_patches };
         Ok(Self { camera, frame_camera, desc, tess_factor })
     }
 }
@@ -142,9 +143,9 @@ impl Session {
     /// Makes images and the passes that draw into them, and records a whole frame.
     pub fn images(&mut self, view: View, layers: bool, cull_back: bool) -> Result<Images> {
         let desc = self.surface.desc();
-        let options = DrawOptions { method: desc.method, spacing: desc.spacing, view, layers, cull_back };
+        let options = DrawOptions { view, layers, cull_back };
         let start = Instant::now();
-        let passes = DrawPasses::new(&self.device, &options)?;
+        let passes = DrawPasses::new(&self.device, desc, &options)?;
         self.pipelines_ms += milliseconds(start);
         let targets = Targets::new(&self.device, self.camera.size, options.needs_layers())?;
         let frame = self.record_frame(&passes, &targets, &self.camera)?;

@@ -6,18 +6,14 @@ use crate::camera::FrameCamera;
 use crate::error::Error;
 use crate::frame::FrameConstants;
 use crate::lists::PatchKind;
-use crate::options::{Spacing, SurfaceMethod, View};
+use crate::options::View;
 use crate::pipelines::{Output, PipelineOptions, pipelines};
-use crate::surface::Surface;
+use crate::surface::{Surface, SurfaceDesc};
 use crate::targets::Targets;
 
 /// What an image is to show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawOptions {
-    /// Surface method; the surface's.
-    pub method: SurfaceMethod,
-    /// Spacing; the surface's.
-    pub spacing: Spacing,
     /// What the beauty image shows.
     pub view: View,
     /// Draw all layers, not only the colour.
@@ -40,19 +36,20 @@ pub struct DrawPasses {
 }
 
 impl DrawPasses {
-    /// Makes the pipelines.
-    pub fn new(device: &Device, options: &DrawOptions) -> Result<Self, Error> {
+    /// Makes the pipelines for surfaces that are made so.
+    pub fn new(device: &Device, surface: &SurfaceDesc, options: &DrawOptions) -> Result<Self, Error> {
         let is_wire = options.view == View::Wire;
         if is_wire && !device.has(Feature::FillModeNonSolid) {
             return Err(Error::NoLines { device: device.name().to_owned() });
         }
         let fill = PipelineOptions {
-            method: options.method,
-            spacing: options.spacing,
+            method: surface.method,
+            spacing: surface.spacing,
             output: if options.needs_layers() { Output::Layers } else { Output::Lean },
             view: options.view,
             cull_back: options.cull_back,
             wire: false,
+            creases: surface.has_creased_patches(),
         };
         let wire = PipelineOptions { wire: true, ..fill };
         Ok(Self { fill: pipelines(device, &fill)?, wire: if is_wire { pipelines(device, &wire)? } else { Vec::new() } })

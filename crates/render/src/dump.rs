@@ -16,7 +16,7 @@ use crate::frame::FrameConstants;
 use crate::lists::{PatchKind, draw_arguments};
 use crate::options::{Spacing, SurfaceMethod, View};
 use crate::pipelines::{Output, PipelineOptions, pipelines};
-use crate::surface::Surface;
+use crate::surface::{Surface, SurfaceDesc};
 use crate::tessellation::{filling_triangle_count, patch_triangle_count};
 
 /// Bytes that are captured at once.
@@ -57,7 +57,8 @@ pub struct DumpPasses {
 
 impl DumpPasses {
     /// Makes pipelines and buffers; fails on a device without transform feedback.
-    pub fn new(device: &Device, method: SurfaceMethod, spacing: Spacing) -> Result<Self, Error> {
+    pub fn new(device: &Device, surface: &SurfaceDesc) -> Result<Self, Error> {
+        let SurfaceDesc { method, spacing, .. } = *surface;
         if !device.has(Feature::TransformFeedback) {
             return Err(Error::NoTransformFeedback { device: device.name().to_owned() });
         }
@@ -68,6 +69,7 @@ impl DumpPasses {
             view: View::Shaded,
             cull_back: false,
             wire: false,
+            creases: surface.has_creased_patches(),
         };
         let buffer = |name, kind, size| Buffer::new(device, &BufferDesc { name, kind, size });
         Ok(Self {

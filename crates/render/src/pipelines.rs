@@ -32,6 +32,8 @@ pub(crate) struct PipelineOptions {
     pub view: View,
     pub cull_back: bool,
     pub wire: bool,
+    /// Some regular patches have a semi-sharp crease.
+    pub creases: bool,
 }
 
 /// The pipeline of each kind of patch that the method has.
@@ -53,23 +55,19 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
             id: shaders::bspline_patch_lean_tese::SPEC_TRANSITION,
             bits: u32::from(kind == PatchKind::Transition),
         },
+        SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_CREASE, bits: u32::from(options.creases) },
     ];
     let view_constant = [SpecConstant { id: shaders::surface_lean_frag::SPEC_VIEW, bits: options.view.constant() }];
     let geometry = geometry_stages(options, kind);
-    let mut stages: Vec<_> = geometry
+    let used: Vec<Vec<SpecConstant>> = geometry
         .iter()
         .map(|module| {
+            let knows = |constant: &&SpecConstant| module.spec_constants.iter().any(|known| known.id == constant.id);
             let is_bspline = module.name.starts_with("bspline_patch");
-            let used = if !is_bspline {
-                &[][..]
-            } else if module.spec_constants.len() > 1 {
-                &bspline_constants[..]
-            } else {
-                &bspline_constants[..1]
-            };
-            stage(module, used)
+            bspline_constants.iter().filter(|_| is_bspline).filter(knows).copied().collect()
         })
         .collect();
+    let mut stages: Vec<_> = geometry.iter().zip(&used).map(|(module, used)| stage(module, used)).collect();
     if options.wire {
         stages.push(stage(&shaders::wire_frag::PROGRAM, &[]));
     } else {

@@ -6,8 +6,8 @@ use std::time::Instant;
 use planish_gpu::{Buffer, Device, Encoder};
 use planish_subdiv::ControlMesh;
 use planish_subdiv::mesh::HierarchicalEdit;
-use planish_subdiv::patch::{FillingQuad, PatchInfo};
-use planish_subdiv::refine::{RefineOptions, Refinement};
+use planish_subdiv::patch::{FillingQuad, PatchInfo, RegularPatch};
+use planish_subdiv::refine::{CreasePatches, RefineOptions, Refinement};
 use planish_subdiv::tables::Tables;
 
 use crate::density::FACTOR_COUNT;
@@ -21,7 +21,7 @@ use crate::tessellation::filling_segment_count;
 use crate::upload::{array, mapped, table};
 
 /// What to make of a cage.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SurfaceDesc {
     /// Surface method.
     pub method: SurfaceMethod,
@@ -29,6 +29,15 @@ pub struct SurfaceDesc {
     pub spacing: Spacing,
     /// Level that irregularities are isolated to ([`crate::density::isolation_level`]).
     pub level: u32,
+    /// Which creases are patches of their own.
+    pub crease_patches: CreasePatches,
+}
+
+impl SurfaceDesc {
+    /// Whether regular patches may have a semi-sharp crease.
+    pub(crate) fn has_creased_patches(&self) -> bool {
+        self.method == SurfaceMethod::Fas && self.crease_patches == CreasePatches::Single
+    }
 }
 
 /// Times of the work that is done once a topology, in milliseconds.
@@ -69,6 +78,7 @@ pub fn preprocess(mesh: &ControlMesh, desc: &SurfaceDesc) -> Result<Preprocessed
         max_level: desc.level,
         uniform: desc.method == SurfaceMethod::Uniform,
         midpoints: filling_segment_count(desc.method, desc.spacing) == 2,
+        crease_patches: desc.crease_patches,
     };
     let refinement = Refinement::new(mesh, options)?;
     let topology = milliseconds(start);
@@ -284,7 +294,12 @@ fn info(info: &PatchInfo) -> planish_shaders::PatchInfo {
 }
 
 fn patches(tables: &Tables) -> Vec<planish_shaders::RegularPatch> {
-    tables.patches.iter().map(|p| planish_shaders::RegularPatch { points: p.points, info: info(&p.info) }).collect()
+    let patch = |p: &RegularPatch| planish_shaders::RegularPatch {
+        points: p.points,
+        info: info(&p.info),
+        sharpness: p.sharpness,
+    };
+    tables.patches.iter().map(patch).collect()
 }
 
 fn filling_quads(device: &Device, tables: &Tables) -> Result<Buffer, Error> {

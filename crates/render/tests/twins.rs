@@ -54,7 +54,7 @@ fn device() -> Device {
 }
 
 fn check(device: &Device, mesh: &ControlMesh, method: SurfaceMethod, spacing: Spacing, level: u32) {
-    let desc = SurfaceDesc { method, spacing, level };
+    let desc = SurfaceDesc { method, spacing, level, ..SurfaceDesc::default() };
     let made = preprocess(mesh, &desc).expect("a manifold cage");
     let factors = density::level_factors((level as f32).exp2(), spacing, &made.tables).expect("factors");
     let surface = Surface::new(device, mesh, desc, made, &factors).expect("upload");

@@ -16,8 +16,21 @@ use crate::topology::{Level, Location, NONE, NonManifold, VertexTag};
 /// Deepest level: locations have 16 bits, and single precision points carry no more.
 pub const MAX_LEVEL: u32 = 15;
 
+/// Which creases are patches of their own, instead of being isolated to the last level.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CreasePatches {
+    /// None: to compare with.
+    None,
+    /// Infinitely sharp ones are boundaries of regular patches, where the faces between them are regular.
+    #[default]
+    Infinite,
+    /// Those, and semi-sharp ones of one sharpness that pass a regular face along one edge, in closed form
+    /// ([`crate::patch::crease_basis`]).
+    Single,
+}
+
 /// What to refine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RefineOptions {
     /// No irregularity is isolated deeper; at most [`MAX_LEVEL`].
     pub max_level: u32,
@@ -26,6 +39,8 @@ pub struct RefineOptions {
     /// Keep one more level of points under the irregular faces of the last level, for the limits of the middles of
     /// their edges: fractional-even spacing has two segments an edge at least.
     pub midpoints: bool,
+    /// Which creases are not refined.
+    pub crease_patches: CreasePatches,
 }
 
 /// How a level came from the one before: its points in order are the children of `vertices`, `edges` and `faces`.
@@ -83,7 +98,7 @@ impl Refinement {
         for k in 0..=last_level {
             let level = &levels[k as usize];
             let mut irregular: Vec<u32> = (0..level.drawn_count)
-                .filter(|&face| level.is_drawn(face) && (options.uniform || !level.is_regular(face)))
+                .filter(|&face| level.is_drawn(face) && (options.uniform || !is_leaf_patch(level, face, options)))
                 .collect();
             let forced = path_edits.forced_faces(level);
             if !forced.is_empty() {
@@ -117,6 +132,18 @@ impl Refinement {
             flags[face as usize] = true;
         }
         flags
+    }
+}
+
+/// Whether a face's limit is one patch of its level.
+fn is_leaf_patch(level: &Level, face: u32, options: RefineOptions) -> bool {
+    match options.crease_patches {
+        CreasePatches::None => {
+            let is_crease = |h: u32| !level.is_unpaired(h) && level.is_infinite(h);
+            level.is_regular(face) && !level.half_edges(face).any(is_crease)
+        }
+        CreasePatches::Infinite => level.is_regular(face),
+        CreasePatches::Single => level.is_regular(face) || level.single_crease(face).is_some(),
     }
 }
 

@@ -157,10 +157,12 @@ impl Tables {
             let beside = irregular_neighbours(level, face, &irregular);
             let (transition, leaf) = if is_last { (0, beside) } else { (beside, 0) };
             let location = level.locations[face as usize];
-            let info = PatchInfo { location, level: k as u8, boundary, transition, leaf };
+            let single = if boundary == 0 { level.single_crease(face) } else { None };
+            let (edge, sharpness) = single.map_or((0, 0.0), |(edge, sharpness)| (1 << edge, sharpness));
+            let info = PatchInfo { location, level: k as u8, boundary, transition, leaf, crease: edge };
             counts.regular += u32::from(transition == 0);
             counts.transition += u32::from(transition != 0);
-            self.patches.push(RegularPatch { points: points.map(|v| first_point + v), info });
+            self.patches.push(RegularPatch { points: points.map(|v| first_point + v), info, sharpness });
         }
         if is_last {
             counts.filling = refinement.irregular_faces[k as usize].len() as u32;

@@ -8,7 +8,7 @@
 use std::collections::HashMap;
 
 use crate::error::Error;
-use crate::mesh::{BoundaryInterpolation, ControlMesh, INFINITE_SHARPNESS, MeshOptions};
+use crate::mesh::{BoundaryInterpolation, ControlMesh, Creasing, INFINITE_SHARPNESS, MeshOptions};
 use crate::rules::is_semi_sharp;
 
 /// "There is none", for any index.
@@ -330,6 +330,43 @@ impl Level {
                 let tag = self.tag(self.origin(corner));
                 if tag.is_plain() { tag.is_regular() } else { self.is_regular_between_creases(corner) }
             })
+    }
+
+    /// Where a crease of one semi-sharp sharpness passes an otherwise regular face along one of its edges: the place of
+    /// that edge in the face, and its sharpness (Niessner, Loop and Greiner 2012). With Chaikin's rule sharpness varies
+    /// along the crease, so there is none.
+    pub fn single_crease(&self, face: u32) -> Option<(u32, f32)> {
+        if self.edge_sharpness.is_empty() || self.sides(face) != 4 || self.options.creasing != Creasing::Uniform {
+            return None;
+        }
+        let corners = self.half_edges(face);
+        let is_regular_inside = |corner: u32| {
+            let tag = self.tag(self.origin(corner));
+            tag.is_regular() && !tag.is_boundary() && !tag.is_corner() && !tag.is_non_manifold()
+        };
+        if !corners.clone().all(is_regular_inside) {
+            return None;
+        }
+        let mut creased = corners.clone().filter(|&half_edge| self.sharpness(half_edge) > 0.0);
+        let half_edge = creased.next().filter(|_| creased.next().is_none())?;
+        let sharpness = self.sharpness(half_edge);
+        if !is_semi_sharp(sharpness) {
+            return None;
+        }
+        let passes = |corner: u32| {
+            let vertex = self.origin(corner);
+            let edges: Vec<u32> = self.spokes(vertex).collect();
+            let mut sharp = edges.iter().enumerate().filter(|&(_, &edge)| self.sharpness(edge) > 0.0);
+            let (first, second) = (sharp.next(), sharp.next());
+            let is_straight = matches!((first, second), (Some((a, _)), Some((b, _))) if b == a + 2);
+            let is_even = edges.iter().all(|&edge| [0.0, sharpness].contains(&self.sharpness(edge)));
+            is_straight && is_even && sharp.next().is_none() && self.vertex_sharpness(vertex) == 0.0
+        };
+        let is_smooth = |corner: u32| self.tag(self.origin(corner)).is_plain();
+        let next = self.next(half_edge);
+        let opposite = [self.next(next), self.previous(half_edge)];
+        let is_single = passes(half_edge) && passes(next) && opposite.into_iter().all(is_smooth);
+        is_single.then_some((half_edge - corners.start, sharpness))
     }
 
     /// Whether infinitely sharp edges cut the faces around a vertex so that the part with this corner is that of a

@@ -77,7 +77,7 @@ fn sheet(m: u32, n: u32) -> ControlMesh {
 }
 
 fn refine(mesh: &ControlMesh, max_level: u32, uniform: bool, midpoints: bool) -> Tables {
-    let options = RefineOptions { max_level, uniform, midpoints };
+    let options = RefineOptions { max_level, uniform, midpoints, ..RefineOptions::default() };
     Tables::new(&Refinement::new(mesh, options).expect("a manifold cage"))
 }
 

@@ -1,7 +1,7 @@
 //! The building of tables alone, on one thread of the CPU.
 
 use anyhow::{Context, Result};
-use planish_render::{SurfaceDesc, SurfaceMethod, preprocess};
+use planish_render::{SurfaceDesc, preprocess};
 use serde::Serialize;
 
 use super::{Bench, Row, median, ratio_text};
@@ -31,7 +31,7 @@ pub fn run(bench: &Bench, cage: &Cage) -> Result<Vec<CpuRow>> {
 
 fn row(bench: &Bench, cage: &Cage, level: u32) -> Result<CpuRow> {
     bench.console.progress(format_args!("{}: tables to level {level}", cage.path().display()));
-    let desc = SurfaceDesc { method: SurfaceMethod::Fas, spacing: bench.arguments.spacing.into(), level };
+    let desc = SurfaceDesc { spacing: bench.arguments.spacing.into(), level, ..SurfaceDesc::default() };
     let (mut topology, mut tables, mut total) = (Vec::new(), Vec::new(), Vec::new());
     let (mut patches, mut bytes) = (0, 0);
     for _ in 0..=bench.arguments.repeat {

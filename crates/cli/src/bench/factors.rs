@@ -4,6 +4,7 @@ use anyhow::Result;
 use planish_gpu::Device;
 use planish_render::SurfaceMethod;
 use planish_render::density::isolation_level;
+use planish_subdiv::refine::CreasePatches;
 use serde::Serialize;
 
 use super::measure::{Measured, Setting, measure};
@@ -28,7 +29,8 @@ pub fn run(bench: &Bench, device: &Device, cage: &Cage) -> Result<Vec<FactorRow>
     let row = |&tess: &f32| {
         bench.console.progress(format_args!("{}: tess factor {tess}", cage.path().display()));
         let level = isolation_level(tess, bench.arguments.max_level);
-        let setting = Setting { method: SurfaceMethod::Fas, level, tess_factor: tess };
+        let crease_patches = CreasePatches::default();
+        let setting = Setting { method: SurfaceMethod::Fas, level, tess_factor: tess, crease_patches };
         let fas = measure(bench, device, cage, setting)?;
         let peer = bench.peer.as_ref().map(|peer| peer.frame(bench, cage, level, tess)).transpose()?;
         let ratio = peer.as_ref().map(|peer| fas.wall_ms / peer.total_ms);

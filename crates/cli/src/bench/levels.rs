@@ -5,6 +5,7 @@ use anyhow::{Error, Result};
 use planish_gpu::{Device, Error as GpuError};
 use planish_render::{Error as RenderError, SurfaceMethod};
 use planish_subdiv::ControlMesh;
+use planish_subdiv::refine::CreasePatches;
 use serde::Serialize;
 
 use super::measure::{Measured, Setting, measure};
@@ -35,7 +36,7 @@ pub struct LevelRow {
 pub fn run(bench: &Bench, device: &Device, cage: &Cage) -> Result<Vec<LevelRow>> {
     let row = |level: u32| {
         let tess_factor = (level as f32).exp2();
-        let setting = |method| Setting { method, level, tess_factor };
+        let setting = |method| Setting { method, level, tess_factor, crease_patches: CreasePatches::default() };
         bench.console.progress(format_args!("{}: fas, level {level}", cage.path().display()));
         let fas = measure(bench, device, cage, setting(SurfaceMethod::Fas))?;
         bench.console.progress(format_args!("{}: uniform, level {level}", cage.path().display()));

@@ -5,6 +5,7 @@ use std::time::Instant;
 use anyhow::Result;
 use planish_gpu::Device;
 use planish_render::{SurfaceDesc, SurfaceMethod, View};
+use planish_subdiv::refine::CreasePatches;
 use serde::Serialize;
 
 use super::{Bench, median};
@@ -20,6 +21,12 @@ pub struct Measured {
     /// Patches that were drawn.
     pub patches: PatchStats,
     pub triangles: u64,
+    /// Points of all levels.
+    pub points: u64,
+    /// Bytes of what depends on connectivity alone.
+    pub table_bytes: u64,
+    /// Time of refinement and tables, once a topology.
+    pub preprocess_ms: f64,
     /// Median times of the stages.
     pub gpu_ms: GpuStats,
     /// Median time from cage upload to fence.
@@ -37,11 +44,11 @@ impl Measured {
 pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) -> Result<Measured> {
     let arguments = bench.arguments;
     let camera = cage.default_view()?;
-    let Setting { method, level, tess_factor } = setting;
+    let Setting { method, level, tess_factor, crease_patches } = setting;
     let plan = Plan {
         frame_camera: frame_camera(&camera, arguments.size),
         camera,
-        desc: SurfaceDesc { method, spacing: arguments.spacing.into(), level },
+        desc: SurfaceDesc { method, spacing: arguments.spacing.into(), level, crease_patches },
         tess_factor,
     };
     let mut session = Session::new(device, cage, &plan, bench.console)?;
@@ -55,7 +62,13 @@ pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) ->
         let wall_ms = milliseconds(start);
         frames.push(FrameStats::new(frame, &session, &report, wall_ms, drawn_triangle_count(&report)));
     }
-    Ok(medians(session.surface.tables().last_level, &frames))
+    let (surface, times) = (&session.surface, session.surface.times());
+    Ok(Measured {
+        points: u64::from(surface.tables().point_count()),
+        table_bytes: surface.memory().tables,
+        preprocess_ms: times.topology + times.tables,
+        ..medians(surface.tables().last_level, &frames)
+    })
 }
 
 /// What is drawn.
@@ -64,6 +77,7 @@ pub struct Setting {
     pub method: SurfaceMethod,
     pub level: u32,
     pub tess_factor: f32,
+    pub crease_patches: CreasePatches,
 }
 
 fn medians(level: u32, frames: &[FrameStats]) -> Measured {
@@ -81,6 +95,7 @@ fn medians(level: u32, frames: &[FrameStats]) -> Measured {
             ..GpuStats::default()
         },
         wall_ms: of(|frame| frame.wall_ms),
+        ..Measured::default()
     }
 }
 

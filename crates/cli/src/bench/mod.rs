@@ -4,11 +4,13 @@
 //! |---|---|
 //! | `levels` | fas with uniform refinement, level by level: FAS section 8.1, Table I |
 //! | `factors` | fas at several tess factors |
+//! | `creases` | crease patches of every kind with refined creases |
 //! | `cpu` | the building of tables alone |
 //! | `measure` | what all of them measure of a frame |
 //! | `peer` | OpenSubdiv's times for the same |
 
 mod cpu;
+mod creases;
 mod factors;
 mod levels;
 mod measure;
@@ -34,7 +36,9 @@ pub fn run(arguments: &BenchArguments, console: &Console) -> Result<()> {
         return bench.scenes(None, |cage| cpu::run(&bench, cage));
     }
     let device = open_device(&arguments.device, console)?;
-    if arguments.tess.is_empty() {
+    if arguments.creases {
+        bench.scenes(Some(&device), |cage| creases::run(&bench, &device, cage))?;
+    } else if arguments.tess.is_empty() {
         bench.scenes(Some(&device), |cage| levels::run(&bench, &device, cage))?;
     } else {
         bench.scenes(Some(&device), |cage| factors::run(&bench, &device, cage))?;
