@@ -57,10 +57,12 @@ vec3 view_color(uint view, vec3 normal, vec3 to_eye, vec2 uv, uvec4 ids, float f
     case VIEW_NORMAL:
         return pow(0.5 + 0.5 * normal, vec3(2.2));
     case VIEW_PATCH: {
-        // Kind by hue (regular blue, transition red, filling green), the patch by brightness.
-        const vec3 KINDS[3] = vec3[3](vec3(0.12, 0.25, 0.62), vec3(0.65, 0.12, 0.10), vec3(0.15, 0.55, 0.18));
+        // Kind by hue (regular blue, transition red, filling green, semi-sharp crease orange, boundary and infinitely
+        // sharp crease cyan), the patch by brightness.
+        const vec3 KINDS[5] = vec3[5](vec3(0.12, 0.25, 0.62), vec3(0.65, 0.12, 0.10), vec3(0.15, 0.55, 0.18),
+                                      vec3(0.80, 0.38, 0.05), vec3(0.06, 0.50, 0.58));
         float vary = 0.7 + 0.6 * fract(float(ids.y % 4096u) * 0.61803399);
-        return lit(normal, to_eye, KINDS[ids.w % 3] * vary);
+        return lit(normal, to_eye, KINDS[ids.w % 5] * vary);
     }
     case VIEW_LEVEL:
         return lit(normal, to_eye, level_colour(ids.z));

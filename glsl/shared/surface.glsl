@@ -9,6 +9,9 @@
 const uint KIND_REGULAR = 0;
 const uint KIND_TRANSITION = 1;
 const uint KIND_FILLING = 2;
+// Shown, not dumped.
+const uint KIND_CREASE = 3;
+const uint KIND_BOUNDARY = 4;
 
 #if defined(DUMP)
 layout(xfb_buffer = 0, xfb_stride = 40) out;
@@ -26,6 +29,17 @@ layout(location = 4) out flat float out_factor;
 #endif
 #endif
 
+#if defined(LAYERS)
+// The kind that the patch view shows: patches along creases and boundaries are told from other regular ones.
+uint shown_kind(PatchInfo info, uint kind)
+{
+    if (kind != KIND_FILLING && patch_crease(info) != 0u) {
+        return KIND_CREASE;
+    }
+    return kind == KIND_REGULAR && patch_boundary(info) != 0u ? KIND_BOUNDARY : kind;
+}
+#endif
+
 void put_surface_point(vec3 position, vec3 normal, vec2 uv, PatchInfo info, uint patch_id, uint kind)
 {
     out_normal = normal;
@@ -37,7 +51,7 @@ void put_surface_point(vec3 position, vec3 normal, vec2 uv, PatchInfo info, uint
 #elif defined(LAYERS)
     out_position = position;
     out_uv = ptex_uv(info, uv);
-    out_ids = uvec4(info.ptex_face, patch_id, patch_level(info), kind);
+    out_ids = uvec4(info.ptex_face, patch_id, patch_level(info), shown_kind(info, kind));
     out_factor = push.frame.v.factors[patch_level(info)];
 #endif
 }

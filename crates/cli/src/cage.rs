@@ -7,6 +7,7 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use planish_scene::{Camera, LoadOptions, Scene, load};
 use planish_subdiv::ControlMesh;
+use planish_subdiv::rules::{VertexRule, is_semi_sharp, vertex_rule};
 use planish_subdiv::topology::{Level, NONE};
 use serde::Serialize;
 
@@ -81,8 +82,12 @@ impl Cage {
 
     /// Whether the backs of triangles are never seen by a camera.
     pub fn hides_backs(&self, camera: &Camera) -> bool {
-        let is_closed = self.facts.boundary_edges == 0 && self.mesh().holes.is_empty();
-        is_closed && backs_are_hidden(self.mesh(), camera.eye.to_array())
+        // Edits move the surface out of the cage's bounding box, or make holes; where the mesh is not manifold its sides
+        // may be turned against each other.
+        let mesh = self.mesh();
+        let is_closed = self.facts.boundary_edges == 0 && mesh.holes.is_empty() && mesh.edits.is_empty();
+        let is_manifold = !self.facts.sharp_features.contains_key("non_manifold_edges");
+        is_closed && is_manifold && backs_are_hidden(self.mesh(), camera.eye.to_array())
     }
 }
 
@@ -112,6 +117,8 @@ pub struct MeshFacts {
     pub extraordinary_by_valence: BTreeMap<u32, u64>,
     /// Those on the boundary, by number of edges.
     pub boundary_extraordinary_by_valence: BTreeMap<u32, u64>,
+    /// Sharp features, by name; those that the mesh has.
+    pub sharp_features: BTreeMap<&'static str, u64>,
 }
 
 impl MeshFacts {
@@ -130,7 +137,7 @@ impl MeshFacts {
         let is_irregular = |&face: &u32| level.is_drawn(face) && !level.is_regular(face);
         facts.irregular_faces = (0..level.face_count()).filter(is_irregular).count() as u64;
         for (vertex, &tag) in (0..).zip(&level.tags) {
-            if level.starts[vertex as usize] == NONE || !tag.is_extraordinary() {
+            if level.starts[vertex as usize] == NONE || tag.is_non_manifold() || !tag.is_extraordinary() {
                 continue;
             }
             facts.extraordinary_vertices += 1;
@@ -141,8 +148,41 @@ impl MeshFacts {
                 *facts.extraordinary_by_valence.entry(faces).or_default() += 1;
             }
         }
+        facts.sharp_features = sharp_features(&level);
         Ok(facts)
     }
+}
+
+/// Counts of what is sharp or not manifold in a cage, boundaries apart.
+fn sharp_features(level: &Level) -> BTreeMap<&'static str, u64> {
+    let mut features = BTreeMap::new();
+    let mut count = |name, number: u64| {
+        if number > 0 {
+            *features.entry(name).or_default() += number;
+        }
+    };
+    count("non_manifold_edges", level.non_manifold_edge_count() as u64);
+    for half_edge in 0..level.origins.len() as u32 {
+        let sharpness = level.sharpness(half_edge);
+        if half_edge < level.twin(half_edge) && sharpness > 0.0 {
+            count(if is_semi_sharp(sharpness) { "semi_sharp_edges" } else { "infinitely_sharp_edges" }, 1);
+        }
+    }
+    for (vertex, &tag) in (0..).zip(&level.tags) {
+        if level.starts[vertex as usize] == NONE {
+            continue;
+        }
+        let sharpness = level.vertex_sharpness(vertex);
+        count("non_manifold_vertices", u64::from(tag.is_non_manifold()));
+        count("semi_sharp_vertices", u64::from(is_semi_sharp(sharpness)));
+        count("infinitely_sharp_vertices", u64::from(tag.is_corner() && !tag.is_boundary() && !tag.is_non_manifold()));
+        if !tag.is_plain() && !tag.is_corner() {
+            let edges = level.incident_edges(vertex);
+            let sharp = edges.into_iter().filter(|&edge| level.sharpness(edge) > 0.0).count();
+            count("darts", u64::from(vertex_rule(sharpness, sharp) == VertexRule::Dart));
+        }
+    }
+    features
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use anyhow::{Context, Result};
 use planish_render::{Preprocessed, SurfaceDesc, preprocess};
+use planish_subdiv::edits::deepest_level;
 use planish_subdiv::mesh::{BoundaryInterpolation, Creasing, FaceVaryingInterpolation, TriangleSubdivision};
 use planish_subdiv::tables::Tables;
 use planish_subdiv::{ControlMesh, patch::PatchInfo};
@@ -65,6 +66,8 @@ struct Features {
     corners: usize,
     holes: usize,
     edits: usize,
+    /// The finest level that an edit names a component of.
+    deepest_edit_level: u32,
     uv: bool,
     boundary: &'static str,
     creasing: &'static str,
@@ -119,9 +122,17 @@ impl Info {
         line("  on the boundary", histogram(&mesh.boundary_extraordinary_by_valence, "of valence", ""));
         line("boundary edges", format!("{}, interpolation: {}", mesh.boundary_edges, self.features.boundary));
         line("features", self.features.to_text());
+        let sharp = mesh.sharp_features.iter().map(|(name, count)| format!("{count} {}", feature_text(name)));
+        let sharp: Vec<String> = sharp.collect();
+        line("sharp, not manifold", if sharp.is_empty() { "none".to_owned() } else { sharp.join(", ") });
         self.refinement.describe(&mut line);
         table.to_text() + "\n" + &self.refinement.levels_table().to_text()
     }
+}
+
+/// "semi-sharp edges" for `semi_sharp_edges`.
+fn feature_text(name: &str) -> String {
+    name.replace("semi_", "semi-").replace("non_", "non-").replace('_', " ")
 }
 
 /// "1452 of 4 sides, 3 of 5 sides".
@@ -142,6 +153,7 @@ impl Features {
             corners: mesh.corners.len(),
             holes: mesh.holes.len(),
             edits: mesh.edits.len(),
+            deepest_edit_level: deepest_level(mesh),
             uv,
             boundary: match options.boundary {
                 BoundaryInterpolation::None => "none",
@@ -176,6 +188,9 @@ impl Features {
         ];
         let mut parts: Vec<String> =
             counted.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
+        if self.edits > 0 {
+            parts.push(format!("the deepest at level {}", self.deepest_edit_level));
+        }
         if self.creases > 0 {
             parts.push(format!("{} creasing", self.creasing));
         }

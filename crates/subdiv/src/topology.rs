@@ -389,6 +389,11 @@ impl Level {
             && sector.spokes.iter().all(|&spoke| self.sides(self.face(spoke)) == 4)
     }
 
+    /// Number of edges of more than two faces, or of two that run the same way along it.
+    pub fn non_manifold_edge_count(&self) -> usize {
+        self.non_manifold.as_ref().map_or(0, |parts| parts.shared_edges.len())
+    }
+
     /// The outgoing half-edges of a vertex, counter-clockwise; on the boundary from the boundary edge on.
     /// The vertex must have all its faces in this level. Where it is not manifold these are those of the first fan.
     pub fn spokes(&self, vertex: u32) -> Spokes<'_> {
