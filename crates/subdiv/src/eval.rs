@@ -26,8 +26,8 @@ pub struct Evaluator {
     stages: Vec<Stage>,
     /// Base face and side of each Ptex face.
     ptex: Vec<(u32, u32)>,
-    /// The level and the face that was asked for last, with the pieces made for it.
-    cached: Option<((usize, u32), Piece)>,
+    /// The base face that was asked for last, and the pieces made for it, by level and face.
+    cached: (u32, HashMap<(usize, u32), Piece>),
 }
 
 /// A level with its points, and what edits made of its faces.
@@ -62,7 +62,7 @@ impl Evaluator {
             let forced = edits.forced_faces(&level);
             if forced.is_empty() {
                 stages.push(Stage { level, points, first_children: HashMap::new() });
-                return Ok(Self { stages, ptex, cached: None });
+                return Ok(Self { stages, ptex, cached: (0, HashMap::new()) });
             }
             let (split, child) = split_level(&level, &forced, stages.len() as u32 + 1)?;
             edits.descend(&level, &forced);
@@ -87,7 +87,8 @@ impl Evaluator {
     /// boundary interpolation) or does not exist. Derivatives are those along the Ptex face's u and v, except at
     /// irregular corners, where they are two vectors that span the tangent plane.
     pub fn evaluate(&mut self, ptex_face: u32, u: f64, v: f64) -> Option<SurfacePoint> {
-        let &(mut face, side) = self.ptex.get(ptex_face as usize)?;
+        let &(base_face, side) = self.ptex.get(ptex_face as usize)?;
+        let mut face = base_face;
         let (mut k, mut u, mut v) = (0, u, v);
         while let Some(&first) = self.stages[k].first_children.get(&face) {
             if self.stages[k].level.sides(face) == 4 {
@@ -102,11 +103,11 @@ impl Evaluator {
         if !stage.level.is_drawn(face) {
             return None;
         }
-        if self.cached.as_ref().is_none_or(|(cached, _)| *cached != (k, face)) {
-            let piece = Piece::new(stage.level.clone(), stage.points.clone(), face, [0.0; 3], k as u32);
-            self.cached = Some(((k, face), piece));
+        if self.cached.0 != base_face {
+            self.cached = (base_face, HashMap::new());
         }
-        let (_, piece) = self.cached.as_mut()?;
+        let make = || Piece::new(stage.level.clone(), stage.points.clone(), face, [0.0; 3], k as u32);
+        let piece = self.cached.1.entry((k, face)).or_insert_with(make);
         Some(if piece.level.sides(face) == 4 { piece.evaluate(u, v) } else { piece.child(side).evaluate(u, v) })
     }
 }

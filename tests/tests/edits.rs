@@ -1,0 +1,68 @@
+//! Hierarchical edits, which OpenSubdiv does not have: dumps against the f64 evaluator, by feature-adaptive and by uniform
+//! refinement.
+
+use std::path::{Path, PathBuf};
+
+use planish_scene::{LoadOptions, load};
+use planish_subdiv::eval::Evaluator;
+use planish_tests::oracle::POSITION_TOLERANCE;
+use planish_tests::parallel::check_all;
+use planish_tests::ply::Dump;
+use planish_tests::program::Planish;
+use planish_tests::repository::{scenes, stem};
+
+/// Whether a scene is about edits.
+fn is_edited(path: &PathBuf) -> bool {
+    stem(path).starts_with("edit_")
+}
+
+/// Every vertex of a dump against the limit surface. Normals away from points without a tangent plane may be off by
+/// `normal_degrees`.
+fn check(mesh: &Path, flags: &str, normal_degrees: f64) -> Result<(), String> {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let dump = folder.path().join("dump.ply");
+    let outcome = Planish::dump(mesh, &dump).flags(flags).run().silent_success()?;
+    let cage = load(mesh, &LoadOptions::default()).expect("scenes can be read").meshes.remove(0).control_mesh;
+    let size = cage.positions.iter().flatten().fold(0.0_f64, |size, c| size.max(f64::from(c.abs())));
+    let mut evaluator = Evaluator::new(&cage).expect("scenes are legal");
+    let mut vertices: Vec<_> = Dump::read(&dump)?.vertices().collect();
+    let (mut worst_position, mut worst_angle) = (0.0_f64, 0.0_f64);
+    // Faces one after another: the evaluator keeps what it made for the last.
+    vertices.sort_by_key(|vertex| vertex.face);
+    for vertex in &vertices {
+        let [u, v] = vertex.uv.map(f64::from);
+        let Some(expected) = evaluator.evaluate(vertex.face, u, v) else {
+            // On the rim of a hole the evaluator may be asked for the hole's side.
+            continue;
+        };
+        let squares = (0..3).map(|c| (f64::from(vertex.position[c]) - expected.position[c]).powi(2));
+        worst_position = worst_position.max(squares.sum::<f64>().sqrt());
+        if let Some(normal) = expected.normal() {
+            let cosine: f64 = (0..3).map(|c| f64::from(vertex.normal[c]) * normal[c]).sum();
+            let is_corner = [u, v].iter().all(|t| t.fract() == 0.0);
+            if !is_corner {
+                worst_angle = worst_angle.max(cosine.clamp(-1.0, 1.0).acos().to_degrees());
+            }
+        }
+    }
+    if vertices.is_empty() || worst_position > POSITION_TOLERANCE * size || worst_angle > normal_degrees {
+        let found = format!("positions off by {}, normals by {worst_angle} degrees", worst_position / size);
+        return Err(outcome.told(&found));
+    }
+    Ok(())
+}
+
+#[test]
+fn dumps_of_edited_scenes_are_the_limit_surface() {
+    let meshes: Vec<PathBuf> = scenes().into_iter().filter(is_edited).collect();
+    assert!(!meshes.is_empty(), "there are scenes with edits");
+    let factors = ["1", "4", "7.3", "16"];
+    let cases: Vec<_> = meshes.iter().flat_map(|mesh| factors.map(|tess| (mesh.clone(), tess))).collect();
+    check_all(&cases, |(mesh, tess)| check(mesh, &format!("--tess {tess}"), 0.05));
+}
+
+#[test]
+fn uniform_refinement_gives_the_same_surface() {
+    let meshes: Vec<PathBuf> = scenes().into_iter().filter(is_edited).collect();
+    check_all(&meshes, |mesh| check(mesh, "--tess 16 --method uniform --spacing equal", 0.05));
+}
