@@ -53,8 +53,14 @@ fn with_coordinate(what: &'static str, coordinate: &str, words: &'static [&'stat
     BadText { what, text: format!("v 0 0 0\nv 1 0 0\nv 1 {coordinate} 0\nv 0 1 0\nf 1 2 3 4\n"), words }
 }
 
+/// A quad with a tag.
+fn edit(what: &'static str, tag: &str, words: &'static [&'static str]) -> BadText {
+    after_four_vertices(what, &format!("f 1 2 3 4\nt {tag}"), words)
+}
+
 fn bad_texts() -> Vec<BadText> {
     let text = |what, text: &str, words| BadText { what, text: text.to_owned(), words };
+    let deep_edit = format!("vertexedit 21/3/3 20{} 0 0 1 add P value", " 0".repeat(20));
     let ten_million = " 1 2 3 4".repeat(2_500_000);
     vec![
         text("an empty file", "", &["no vertices"]),
@@ -84,10 +90,24 @@ fn bad_texts() -> Vec<BadText> {
         with_coordinate("a number past the floats", "1e39", &["line 3", "1e39"]),
         with_coordinate("a number past the doubles", "-1e999", &["line 3"]),
         with_coordinate("a word for a number", "one", &["line 3", "one"]),
-        after_four_vertices("an edge of three faces", "v 0 0 1\nf 1 2 3\nf 2 1 4\nf 1 2 5", &["manifold"]),
-        after_four_vertices("two faces of opposite sense", "f 1 2 3\nf 1 2 4", &["manifold"]),
-        after_four_vertices("two fans", "v 0 0 1\nf 1 2 3\nf 1 4 5", &["manifold"]),
-        after_four_vertices("a crease", "f 1 2 3 4\nt crease 2/1/0 0 1 2.0", &["crease", "not supported yet"]),
+        after_four_vertices("a crease of one vertex", "f 1 2 3 4\nt crease 1/1/0 0 2.0", &["line 6", "1 vertices"]),
+        after_four_vertices("a crease of too few values", "f 1 2 3 4\nt crease 2/2/0 0 1 2.0", &["line 6", "2/2/0"]),
+        after_four_vertices("a sharpness too many", "f 1 2 3 4\nt crease 3/3/0 0 1 2 1 1 1", &["line 6", "sharpness"]),
+        after_four_vertices("a negative sharpness", "f 1 2 3 4\nt crease 2/1/0 0 1 -2.0", &["line 6", "-2"]),
+        after_four_vertices("a sharpness that is NaN", "f 1 2 3 4\nt crease 2/1/0 0 1 nan", &["line 6", "nan"]),
+        after_four_vertices("a corner that is NaN", "f 1 2 3 4\nt corner 1/1/0 0 nan", &["line 6", "nan"]),
+        after_four_vertices("a crease past the vertices", "f 1 2 3 4\nt crease 2/1/0 0 4 2.0", &["line 6", "vertex 4"]),
+        after_four_vertices("a hole past the faces", "f 1 2 3 4\nt hole 1/0/0 1", &["line 6", "face 1"]),
+        after_four_vertices("an unknown crease method", "f 1 2 3 4\nt creasemethod 0/0/1 round", &["line 6", "round"]),
+        edit("an edit of a face that is not", "vertexedit 3/3/3 2 1 0 0 0 1 add P value", &["face 1"]),
+        edit("an edit of a child that is not", "vertexedit 4/3/3 3 0 4 0 0 0 1 add P value", &["child 4"]),
+        edit("an edit of a vertex that is not", "vertexedit 4/3/3 3 0 3 4 0 0 1 add P value", &["vertex 4"]),
+        edit("an edit of an edge that is not", "edgeedit 4/1/3 3 0 3 4 2 set P sharpness", &["edge 4"]),
+        edit("an edit of a level too deep", &deep_edit, &["level 18"]),
+        edit("an edit of too few floats", "vertexedit 3/2/3 2 0 0 0 0 add P value", &["2 floats"]),
+        edit("an edit of a path too long", "vertexedit 3/3/3 3 0 0 0 0 1 add P value", &["path of length 3"]),
+        edit("an edit with a value that is NaN", "vertexedit 3/3/3 2 0 0 0 0 nan add P value", &["nan"]),
+        edit("an edit that says neither", "vertexedit 3/3/3 2 0 0 0 0 1 move P value", &["move"]),
     ]
 }
 

@@ -103,6 +103,11 @@ impl Evaluator {
         if !stage.level.is_drawn(face) {
             return None;
         }
+        if stage.level.is_regular(face) {
+            let base = stage.points[stage.level.vertices(face)[0] as usize];
+            let relative = |i: u32| add(stage.points[i as usize], base, -1.0);
+            return Some(placed(evaluate_face(&stage.level, face, relative, u, v), base, (k as f64).exp2()));
+        }
         if self.cached.0 != base_face {
             self.cached = (base_face, HashMap::new());
         }
@@ -151,10 +156,8 @@ impl Piece {
 
     fn evaluate(&mut self, u: f64, v: f64) -> SurfacePoint {
         if self.level.is_regular(self.face) {
-            let (indices, boundary) = control_points(&self.level, self.face);
-            let mut points = indices.map(|i| self.points[i as usize]);
-            reflect(&mut points, boundary);
-            return self.placed(evaluate(&points, u, v), (f64::from(self.depth)).exp2());
+            let point = evaluate_face(&self.level, self.face, |i| self.points[i as usize], u, v);
+            return self.placed(point, (f64::from(self.depth)).exp2());
         }
         let corner = match (u, v) {
             (0.0, 0.0) => Some(0),
@@ -200,11 +203,23 @@ impl Piece {
     }
 
     fn placed(&self, point: SurfacePoint, derivative_scale: f64) -> SurfacePoint {
-        SurfacePoint {
-            position: add(point.position, self.origin, 1.0),
-            du: point.du.map(|c| c * derivative_scale),
-            dv: point.dv.map(|c| c * derivative_scale),
-        }
+        placed(point, self.origin, derivative_scale)
+    }
+}
+
+/// A point of a regular face, whose points are asked for by index.
+fn evaluate_face(level: &Level, face: u32, point: impl Fn(u32) -> [f64; 3], u: f64, v: f64) -> SurfacePoint {
+    let (indices, boundary) = control_points(level, face);
+    let mut points = indices.map(point);
+    reflect(&mut points, boundary);
+    evaluate(&points, u, v)
+}
+
+fn placed(point: SurfacePoint, origin: [f64; 3], derivative_scale: f64) -> SurfacePoint {
+    SurfacePoint {
+        position: add(point.position, origin, 1.0),
+        du: point.du.map(|c| c * derivative_scale),
+        dv: point.dv.map(|c| c * derivative_scale),
     }
 }
 
