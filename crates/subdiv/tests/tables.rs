@@ -1,7 +1,7 @@
 //! Tables against the f64 evaluator and against the theory's counts, on cages made here.
 
 use planish_subdiv::eval::Evaluator;
-use planish_subdiv::mesh::{BoundaryInterpolation, ControlMesh};
+use planish_subdiv::mesh::{BoundaryInterpolation, ControlMesh, Corner, Crease, Creasing, TriangleSubdivision};
 use planish_subdiv::patch::{cubic_basis, evaluate, reflect};
 use planish_subdiv::refine::{RefineOptions, Refinement};
 use planish_subdiv::tables::{PatchCounts, Tables};
@@ -149,6 +149,90 @@ fn check(mesh: &ControlMesh, tables: &Tables) -> f64 {
         }
     }
     covered
+}
+
+/// The mesh with every edge of another sharpness, and some sharp vertices.
+fn sharpened(mut mesh: ControlMesh, creasing: Creasing) -> ControlMesh {
+    const SHARPNESS: [f32; 9] = [0.0, 2.3, 10.0, 0.3, 0.0, 1.0, 1.5, 0.0, 7.8];
+    let mut first = 0;
+    for &sides in &mesh.face_sizes {
+        let face = &mesh.face_vertices[first..first + sides as usize];
+        for (i, &a) in face.iter().enumerate() {
+            let b = face[(i + 1) % face.len()];
+            let sharpness = SHARPNESS[(a * b + a + b) as usize % SHARPNESS.len()];
+            mesh.creases.push(Crease { vertices: [a, b], sharpness });
+        }
+        first += sides as usize;
+    }
+    mesh.corners = vec![Corner { vertex: 1, sharpness: 2.3 }, Corner { vertex: 4, sharpness: 10.0 }];
+    mesh.options.creasing = creasing;
+    mesh
+}
+
+/// Quads that share an edge as the pages of a book share its spine, three quads high.
+fn book(pages: u32) -> ControlMesh {
+    let mut positions: Vec<[f32; 3]> = (0..4).map(|j| [0.0, j as f32, 0.1 * (j * j) as f32]).collect();
+    let mut faces = Vec::new();
+    for page in 0..pages {
+        let angle = page as f32 * std::f32::consts::TAU / pages as f32;
+        let first = positions.len() as u32;
+        for i in 1..=2 {
+            let x = i as f32;
+            positions.extend((0..4).map(|j| [x * angle.cos(), j as f32 + 0.2 * x, x * angle.sin()]));
+        }
+        for j in 0..3 {
+            faces.push(vec![j, first + j, first + j + 1, j + 1]);
+            faces.push(vec![first + j, first + 4 + j, first + 5 + j, first + j + 1]);
+        }
+    }
+    mesh(positions, &faces)
+}
+
+/// Two cubes that share a vertex.
+fn bow_tie() -> ControlMesh {
+    let one = cube();
+    let other = |v: u32| if v == 0 { 7 } else { 7 + v };
+    let mut positions = one.positions.clone();
+    positions.extend(one.positions[1..].iter().map(|p| p.map(|c| c + 1.0)));
+    let mut faces: Vec<Vec<u32>> = one.face_vertices.chunks(4).map(<[u32]>::to_vec).collect();
+    faces.extend(one.face_vertices.chunks(4).map(|face| face.iter().map(|&v| other(v)).collect::<Vec<_>>()));
+    mesh(positions, &faces)
+}
+
+#[test]
+fn sharp_and_non_manifold_cages_give_the_limit_surface_and_cover_it_once() {
+    let mut smooth_prism = prism(3);
+    smooth_prism.options.triangles = TriangleSubdivision::Smooth;
+    let mut one_sided = cube();
+    one_sided.face_vertices[..4].reverse();
+    for cage in [cube(), prism(5), sheet(4, 3), pole(6, 2), book(3), book(5), bow_tie(), smooth_prism, one_sided] {
+        for creasing in [Creasing::Uniform, Creasing::Chaikin] {
+            for mesh in [cage.clone(), sharpened(cage.clone(), creasing)] {
+                let area: f64 = mesh.ptex_face_count() as f64;
+                for (level, midpoints) in [(0, false), (1, true), (2, false), (4, false)] {
+                    let tables = refine(&mesh, level, false, midpoints);
+                    assert!((check(&mesh, &tables) - area).abs() < 1e-9);
+                }
+                assert!((check(&mesh, &refine(&mesh, 2, true, false)) - area).abs() < 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
+fn infinite_creases_cost_nothing_along_their_length() {
+    let mut mesh = sheet(8, 8);
+    mesh.creases = (0..8).map(|i| Crease { vertices: [36 + i, 37 + i], sharpness: 10.0 }).collect();
+    let tables = refine(&mesh, 6, false, false);
+    assert_eq!(tables.total_counts(), PatchCounts { regular: 64, transition: 0, filling: 0 });
+    // One edge less, and only the dart at its end is isolated.
+    mesh.creases.pop();
+    let counts = |level: u32| {
+        let counts = refine(&mesh, level, false, false).total_counts();
+        counts.regular + counts.transition + counts.filling
+    };
+    assert_eq!(counts(6) - counts(5), counts(5) - counts(4));
+    assert!(counts(6) < 64 + 6 * 40);
 }
 
 #[test]
