@@ -26,6 +26,9 @@ struct Edges {
 pub fn faults(vertices: &[Vertex], cage: &Cage) -> Vec<String> {
     let largest = vertices.iter().flat_map(|vertex| vertex.position).fold(0.0, |a: f32, b| a.max(b.abs()));
     let points = weld(vertices, TOLERANCE * cage.diagonal().max(f64::from(largest)));
+    if !cage.is_manifold() {
+        return multiplicity_faults(&points, vertices, cage);
+    }
     let mut edges = Edges { at: HashMap::new(), faults: Vec::new() };
     for (triangle, corners) in points.as_chunks::<3>().0.iter().enumerate() {
         edges.add(triangle, *corners, vertices);
@@ -50,6 +53,34 @@ pub fn faults(vertices: &[Vertex], cage: &Cage) -> Vec<String> {
         None => edges.faults.push("the boundary is no set of loops".to_owned()),
     }
     edges.faults
+}
+
+/// The same for a cage that is not manifold: every edge has two triangles, or as many as the cage's edge that it lies on
+/// has faces.
+fn multiplicity_faults(points: &[u32], vertices: &[Vertex], cage: &Cage) -> Vec<String> {
+    let sides = cage.side_counts();
+    let mut edges: HashMap<[u32; 2], Vec<[usize; 2]>> = HashMap::new();
+    for first in (0..points.len()).step_by(3) {
+        for ends in [[first, first + 1], [first + 1, first + 2], [first + 2, first]] {
+            let [a, b] = ends.map(|corner| points[corner]);
+            edges.entry([a.min(b), a.max(b)]).or_default().push(ends);
+        }
+    }
+    let mut faults = Vec::new();
+    let mut covered: HashMap<Side, f64> = sides.keys().map(|&side| (side, 0.0)).collect();
+    for triangles in edges.values() {
+        let on_sides = triangles.iter().flat_map(|ends| sides_of(ends.map(|corner| vertices[corner])));
+        let on_sides: Vec<(Side, f64)> = on_sides.filter(|(side, _)| sides.contains_key(side)).collect();
+        let expected = on_sides.first().map_or(2, |(side, _)| sides[side]);
+        if triangles.len() != expected {
+            let ends = told(triangles[0].map(|corner| vertices[corner]));
+            faults.push(format!("an edge of {} triangles, expected {expected}: {ends}", triangles.len()));
+        }
+        on_sides.into_iter().for_each(|(side, length)| *covered.entry(side).or_default() += length);
+    }
+    let off = covered.iter().filter(|&(_, length)| (length - 1.0).abs() > COVERAGE_TOLERANCE);
+    faults.extend(off.map(|(side, length)| format!("{side:?} is covered {length} times")));
+    faults
 }
 
 impl Edges {

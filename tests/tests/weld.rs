@@ -24,7 +24,7 @@ fn dump(mesh: &Path, flags: &str) -> Result<Vec<Vertex>, String> {
 /// the diagonal that does not end at the vertex, so that four triangles share it: not right yet, and all that is excused.
 fn is_known(mesh: &Path, fault: &str) -> bool {
     let between_quads = fault.matches("kind 2").count() == 2 && fault.starts_with("two triangles on the same side");
-    stem(mesh) == "valence_2" && between_quads
+    stem(mesh).starts_with("valence_2") && between_quads
 }
 
 fn check(mesh: &Path, flags: &str) -> Result<(), String> {
@@ -35,20 +35,66 @@ fn check(mesh: &Path, flags: &str) -> Result<(), String> {
     if faults.is_empty() { Ok(()) } else { told() }
 }
 
+/// Scenes in which parts of the surface lie on each other or have no extent, so that points that are not the same are at the
+/// same place; and holes of finer levels, which do not end at the sides of Ptex faces.
+const UNWELDABLE: [&str; 10] = [
+    "coincident_vertices",
+    "collinear_face",
+    "double_sided_quad",
+    "duplicate_quad",
+    "edit_hole_1",
+    "edit_hole_2",
+    "edit_hole_extraordinary",
+    "edit_hole_ngon",
+    "flat_pair",
+    "zero_area_face",
+];
+
+/// Beginnings of the names of scenes that are about rules. Rules do not change how patches are tessellated: one factor of
+/// each spacing is enough for them.
+const RULES: [&str; 11] = [
+    "boundary_",
+    "chaikin_",
+    "corner_",
+    "crease_",
+    "cube_all_",
+    "dart_",
+    "edit_",
+    "hole_",
+    "nonmanifold_",
+    "smooth_triangles",
+    "triangles_",
+];
+
+fn is_about_rules(mesh: &Path) -> bool {
+    RULES.iter().any(|rule| stem(mesh).starts_with(rule))
+}
+
 fn check_every_mesh(flags: &[&str]) {
-    let meshes = [scenes(), models()].concat();
+    check_meshes(flags, |_| true);
+}
+
+fn check_every_shape(flags: &[&str]) {
+    check_meshes(flags, |mesh| !is_about_rules(mesh));
+}
+
+fn check_meshes(flags: &[&str], is_wanted: impl Fn(&Path) -> bool) {
+    let mut meshes = [scenes(), models()].concat();
+    meshes.retain(|mesh| is_wanted(mesh) && !UNWELDABLE.contains(&stem(mesh)));
     let cases: Vec<_> = meshes.iter().flat_map(|mesh| flags.iter().map(move |flags| (mesh, *flags))).collect();
     check_all(&cases, |(mesh, flags)| check(mesh, flags));
 }
 
 #[test]
 fn fractional_odd_dumps_meet_edge_to_edge_up_to_the_boundary() {
-    check_every_mesh(&["--tess 5.3", "--tess 1.2"]);
+    check_every_mesh(&["--tess 5.3"]);
+    check_every_shape(&["--tess 1.2"]);
 }
 
 #[test]
 fn fractional_even_dumps_meet_edge_to_edge_up_to_the_boundary() {
-    check_every_mesh(&["--tess 5.3 --spacing fractional-even", "--tess 2.7 --spacing fractional-even"]);
+    check_every_mesh(&["--tess 2.7 --spacing fractional-even"]);
+    check_every_shape(&["--tess 5.3 --spacing fractional-even"]);
 }
 
 #[test]
@@ -57,9 +103,15 @@ fn equal_dumps_meet_edge_to_edge_up_to_the_boundary() {
 }
 
 #[test]
+fn dumps_with_other_crease_patches_meet_edge_to_edge() {
+    let flags = ["--tess 5.3 --crease-patches single", "--tess 5.3 --crease-patches none"];
+    check_meshes(&flags, |mesh| stem(mesh).starts_with("crease_") || stem(mesh).starts_with("cube_all"));
+}
+
+#[test]
 fn dumps_cut_short_by_the_largest_level_meet_edge_to_edge() {
     for spacing in ["equal", "fractional-odd", "fractional-even"] {
-        check_every_mesh(&[&format!("--tess 9.4 --max-level 1 --spacing {spacing}")]);
+        check_every_shape(&[&format!("--tess 9.4 --max-level 1 --spacing {spacing}")]);
     }
 }
 

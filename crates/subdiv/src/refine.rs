@@ -139,8 +139,7 @@ impl Refinement {
 fn is_leaf_patch(level: &Level, face: u32, options: RefineOptions) -> bool {
     match options.crease_patches {
         CreasePatches::None => {
-            let is_crease = |h: u32| !level.is_unpaired(h) && level.is_infinite(h);
-            level.is_regular(face) && !level.half_edges(face).any(is_crease)
+            level.is_regular(face) && !level.vertices(face).iter().any(|&v| level.tag(v).has_infinite_crease())
         }
         CreasePatches::Infinite => level.is_regular(face),
         CreasePatches::Single => level.is_regular(face) || level.single_crease(face).is_some(),
@@ -304,7 +303,7 @@ fn tag_children(parent: &Level, split: &Split, children: &Children, child: &mut 
         let shared_count = parent.sharing(&edge).len();
         let unpaired = parent.is_unpaired(edge);
         let tag = if shared_count > 1 {
-            VertexTag::non_manifold(false, false)
+            VertexTag::middle_of_non_manifold()
         } else {
             VertexTag::new(if unpaired { 2 } else { 4 }, unpaired, false, false)
         };

@@ -25,6 +25,7 @@ pub const NONE: u32 = u32::MAX;
 /// | 4 | semi-sharp itself, or an end of a semi-sharp edge: its rule still changes from level to level |
 /// | 5 | an end of an infinitely sharp edge between two faces |
 /// | 6 | not manifold: more than one fan of faces, or an edge of more than two faces |
+/// | 7 | infinitely sharp edges do not cut the faces as a regular boundary or corner has them |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct VertexTag(u8);
 
@@ -36,6 +37,7 @@ impl VertexTag {
     const SEMI_SHARP: u8 = 16;
     const INFINITE_CREASE: u8 = 32;
     const NON_MANIFOLD: u8 = 64;
+    const IRREGULAR_SECTORS: u8 = 128;
 
     /// The tag of a manifold vertex with this many faces.
     pub fn new(face_count: u32, boundary: bool, corner: bool, beside_non_quad: bool) -> Self {
@@ -54,15 +56,24 @@ impl VertexTag {
     }
 
     /// The tag of a vertex that is not manifold.
-    pub(crate) fn non_manifold(corner: bool, beside_non_quad: bool) -> Self {
+    fn non_manifold(corner: bool, beside_non_quad: bool) -> Self {
         let plain = Self::new(0, false, corner, beside_non_quad);
         Self(plain.0 | Self::NON_MANIFOLD)
+    }
+
+    /// The tag of the middle of an edge that is not manifold: a crease with two faces on every side of it.
+    pub(crate) fn middle_of_non_manifold() -> Self {
+        Self::non_manifold(false, false)
     }
 
     /// The tag with what its edges' and its own sharpness adds.
     pub(crate) fn with_sharpness(self, semi_sharp: bool, infinite_crease: bool) -> Self {
         let kept = self.0 & !(Self::SEMI_SHARP | Self::INFINITE_CREASE);
         Self(kept | u8::from(semi_sharp) * Self::SEMI_SHARP | u8::from(infinite_crease) * Self::INFINITE_CREASE)
+    }
+
+    fn with_irregular_sectors(self) -> Self {
+        Self(self.0 | Self::IRREGULAR_SECTORS)
     }
 
     /// On the boundary of a manifold part: the crease rule, unless it is a corner.
@@ -100,9 +111,11 @@ impl VertexTag {
         self.0 & (Self::SEMI_SHARP | Self::INFINITE_CREASE | Self::NON_MANIFOLD) == 0
     }
 
-    /// All its corners of faces are regular; meaningful for plain vertices.
-    fn is_regular(self) -> bool {
-        self.0 & (Self::EXTRAORDINARY | Self::BESIDE_NON_QUAD) == 0
+    /// Quads all of whose vertices are so have a bicubic limit patch.
+    pub fn is_regular(self) -> bool {
+        let is_cut = self.0 & (Self::INFINITE_CREASE | Self::NON_MANIFOLD) != 0;
+        let irregular = if is_cut { Self::IRREGULAR_SECTORS } else { Self::EXTRAORDINARY };
+        self.0 & (irregular | Self::BESIDE_NON_QUAD | Self::SEMI_SHARP) == 0
     }
 
     /// All faces at the vertex are quads.
@@ -323,13 +336,9 @@ impl Level {
         face < self.drawn_count && !self.hidden.get(face as usize).copied().unwrap_or(false)
     }
 
-    /// Whether the face's limit is one bicubic patch: a quad of regular corners (algorithms: FAS section 3.3).
+    /// Whether the face's limit is one bicubic patch: a quad of regular vertices (algorithms: FAS section 3.3).
     pub fn is_regular(&self, face: u32) -> bool {
-        self.sides(face) == 4
-            && self.half_edges(face).all(|corner| {
-                let tag = self.tag(self.origin(corner));
-                if tag.is_plain() { tag.is_regular() } else { self.is_regular_between_creases(corner) }
-            })
+        self.sides(face) == 4 && self.vertices(face).iter().all(|&v| self.tag(v).is_regular())
     }
 
     /// Where a crease of one semi-sharp sharpness passes an otherwise regular face along one of its edges: the place of
@@ -342,7 +351,8 @@ impl Level {
         let corners = self.half_edges(face);
         let is_regular_inside = |corner: u32| {
             let tag = self.tag(self.origin(corner));
-            tag.is_regular() && !tag.is_boundary() && !tag.is_corner() && !tag.is_non_manifold()
+            let is_inside = !tag.is_boundary() && !tag.is_corner() && !tag.is_non_manifold();
+            is_inside && !tag.is_extraordinary() && tag.touches_only_quads()
         };
         if !corners.clone().all(is_regular_inside) {
             return None;
@@ -369,24 +379,25 @@ impl Level {
         is_single.then_some((half_edge - corners.start, sharpness))
     }
 
-    /// Whether infinitely sharp edges cut the faces around a vertex so that the part with this corner is that of a
-    /// regular boundary (two quads along a crease) or of a regular corner (one quad).
-    fn is_regular_between_creases(&self, corner: u32) -> bool {
-        let vertex = self.origin(corner);
-        let tag = self.tag(vertex);
-        if tag.is_semi_sharp() {
-            return false;
-        }
+    /// Whether infinitely sharp edges cut the faces around a vertex into parts like those of a regular boundary (two faces
+    /// along a crease) or of a regular corner (one face).
+    ///
+    /// It takes all of them: a patch may not border one two levels finer across a crease either.
+    fn has_regular_sectors(&self, vertex: u32, is_corner: bool) -> bool {
         let infinite_count = self.incident_edges(vertex).iter().filter(|&&edge| self.is_infinite(edge)).count();
         let regular_face_count = match infinite_count {
             0 | 1 => return false,
-            2 if !tag.is_corner() => 2,
+            2 if !is_corner => 2,
             _ => 1,
         };
-        let sector = self.sector(corner);
-        !sector.is_closed
-            && sector.spokes.len() == regular_face_count
-            && sector.spokes.iter().all(|&spoke| self.sides(self.face(spoke)) == 4)
+        self.fans(vertex).iter().all(|&start| {
+            let spokes: Vec<u32> = self.spokes_from(start).collect();
+            let cuts: Vec<usize> = (0..spokes.len()).filter(|&i| self.is_infinite(spokes[i])).collect();
+            // Around a closed fan the last part ends where the first begins.
+            let wrapped = cuts.first().map(|first| first + spokes.len());
+            let ends = cuts.iter().copied().skip(1).chain(wrapped);
+            !cuts.is_empty() && cuts.iter().zip(ends).all(|(begin, end)| end - begin == regular_face_count)
+        })
     }
 
     /// Number of edges of more than two faces, or of two that run the same way along it.
@@ -611,7 +622,9 @@ impl Level {
             VertexTag::non_manifold(corner || !self.is_non_manifold_crease(vertex, face_count), beside_non_quad)
         };
         let has_sharpness = !self.edge_sharpness.is_empty() || given > 0.0;
-        if has_sharpness { self.tag_with_sharpness(vertex, tag) } else { tag }
+        let tag = if has_sharpness { self.tag_with_sharpness(vertex, tag) } else { tag };
+        let is_cut = tag.is_non_manifold() || tag.has_infinite_crease();
+        if is_cut && !self.has_regular_sectors(vertex, tag.is_corner()) { tag.with_irregular_sectors() } else { tag }
     }
 
     /// The tag of a vertex with what the sharpness at it adds.

@@ -161,11 +161,12 @@ impl Judge {
 }
 
 /// How far a normal may be off, in degrees: points of one level have lost so many bits in their differences, and the
-/// more the flatter the angle between the tangents.
+/// more the shorter one of the tangents is and the flatter the angle between them.
 fn normal_tolerance(coordinate_by_edge: f64, expected: &SurfacePoint) -> f64 {
     let rounding = 4.0 * (-24_f64).exp2() * coordinate_by_edge;
-    let sine = length(cross(expected.du, expected.dv)) / (length(expected.du) * length(expected.dv));
-    NORMAL_TOLERANCE.max(rounding.to_degrees()) / sine
+    let longest = length(expected.du).max(length(expected.dv));
+    let flatness = length(cross(expected.du, expected.dv)) / (longest * longest);
+    NORMAL_TOLERANCE.max((rounding / flatness).to_degrees())
 }
 
 /// Whether no derivative is nothing but rounding, as across an edge between two faces on the same vertices.

@@ -21,7 +21,7 @@ use crate::judge::{CORNERS, Judge};
 /// What the cages may have.
 const FEATURES: Features = Features::ALL.without(Features::SLIT_FANS);
 /// Cages of a test, unless more are asked for.
-const CASES: u32 = 1500;
+const CASES: u32 = 1000;
 /// Where regular patches are evaluated, in their own domain.
 const SAMPLES: [[f64; 2]; 5] = [[0.0, 0.0], [1.0, 0.5], [0.3, 0.7], [0.0, 1.0], [0.85, 0.1]];
 /// Where filling quads have limit points besides: in the middles of edges and in the centre.
