@@ -2,6 +2,7 @@
 // Regular and transition patches: fetches 16 control points and sets the tess factors (FAS sections 4.1 and 4.2).
 #extension GL_GOOGLE_include_directive : require
 #include "shared/frame.glsl"
+#include "shared/control_points.glsl"
 #include "shared/spacing.glsl"
 
 layout(constant_id = 2) const bool CREASE = false; // some patches have a semi-sharp crease
@@ -14,45 +15,12 @@ layout(location = 3) patch out float inner_factor;
 layout(location = 4) patch out uvec4 patch_words; // its PatchInfo, and its number
 layout(location = 5) patch out float patch_sharpness; // of the semi-sharp crease along one of its edges, or 0
 
-vec3 point(uint patch_place, uint i)
-{
-    return push.points.v[push.patches.v[patch_place].points[i]];
-}
-
-// The place of the control point that a row or column index stands for, and of the one that reflects it.
-uvec2 mirror(uint i, bool low, bool high)
-{
-    return i == 0 && low ? uvec2(1, 2) : (i == 3 && high ? uvec2(2, 1) : uvec2(i, i));
-}
-
-// 2 P - Q across boundary edges; both ways at a corner.
-vec3 reflected_point(uint patch_place, uint i, uint boundary)
-{
-    uvec2 column = mirror(i & 3u, (boundary & 8u) != 0u, (boundary & 2u) != 0u);
-    uvec2 row = mirror(i >> 2, (boundary & 1u) != 0u, (boundary & 4u) != 0u);
-    precise vec3 near = point(patch_place, 4 * row.x + column.x);
-    precise vec3 far_row = near;
-    if (column.x != column.y) {
-        near = 2.0 * near - point(patch_place, 4 * row.x + column.y);
-    }
-    if (row.x == row.y) {
-        return near;
-    }
-    far_row = point(patch_place, 4 * row.y + column.x);
-    if (column.x != column.y) {
-        far_row = 2.0 * far_row - point(patch_place, 4 * row.y + column.y);
-    }
-    precise vec3 result = 2.0 * near - far_row;
-    return result;
-}
-
 void main()
 {
     uint patch_place = patch_index[0];
     PatchInfo info = push.patches.v[patch_place].info;
-    uint boundary = patch_boundary(info);
-    control_point[gl_InvocationID] = boundary == 0u ? point(patch_place, gl_InvocationID)
-                                                    : reflected_point(patch_place, gl_InvocationID, boundary);
+    control_point[gl_InvocationID] =
+        control_point_of(push.patches, push.points, patch_place, gl_InvocationID, patch_boundary(info));
     if (gl_InvocationID != 0) {
         return;
     }

@@ -3,8 +3,8 @@
 #define PLANISH_FRAME
 #include "tables.glsl"
 
-// Levels that a patch can have, and one more for the finer side of an edge.
-const uint FACTOR_COUNT = 17;
+// One for each level, and one more for the finer side of an edge.
+const uint FACTOR_COUNT = LEVEL_COUNT + 1;
 
 struct FrameData {
     mat4 world_to_camera; // right-handed, looking down -z

@@ -4,6 +4,9 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
 
+// Levels that a patch can have.
+const uint LEVEL_COUNT = 16;
+
 // `count` indices from `first_index` on, weighted by as many weights from `first_weight` on.
 struct StencilRow {
     uint first_index;

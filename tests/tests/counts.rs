@@ -188,7 +188,7 @@ fn every_timed_frame_has_its_stats() {
     assert_eq!(frames.len(), 3);
     for frame in frames {
         let milliseconds = |stage: &str| frame["gpu_ms"][stage].as_f64().unwrap();
-        let stages: f64 = ["density", "select", "subdivide", "limit", "draw"].map(milliseconds).iter().sum();
+        let stages: f64 = ["density", "select", "subdivide", "limit", "emit", "draw"].map(milliseconds).iter().sum();
         assert!(milliseconds("subdivide") > 0.0 && milliseconds("draw") > 0.0, "{frame}");
         assert!(stages <= milliseconds("total") * 1.001, "{frame}");
         assert!(frame["wall_ms"].as_f64().unwrap() > 0.0, "{frame}");

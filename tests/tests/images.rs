@@ -11,7 +11,8 @@ use planish_tests::golden::read;
 use planish_tests::layers::{Layers, transform};
 use planish_tests::parallel::check_all;
 use planish_tests::program::Planish;
-use planish_tests::repository::scene;
+use planish_tests::repository::{models, scene};
+use serde_json::Value;
 
 /// What a layer holds where there is no surface, if it holds ids.
 const NO_SURFACE: u32 = u32::MAX;
@@ -204,6 +205,73 @@ fn culling_changes_no_pixel_of_a_closed_mesh() {
         fs::read(image).unwrap()
     };
     assert!(pixels("") == pixels("--no-cull"));
+}
+
+/// The frame of `--stats -`, and the bytes of the image.
+fn frame_and_image(mesh: &Path, flags: &str) -> Result<(Value, Vec<u8>), String> {
+    let folder = temporary();
+    let image = folder.path().join("out.exr");
+    let outcome = Planish::render(mesh, &image).flags(flags).flags("--stats -").run().silent_success()?;
+    let bytes = fs::read(&image).map_err(|error| error.to_string())?;
+    Ok((outcome.json()?["frames"][0].clone(), bytes))
+}
+
+/// Number of patches of all kinds in a frame.
+fn patch_count(frame: &Value) -> u64 {
+    ["regular", "transition", "quad"].iter().map(|kind| frame["patches"][kind].as_u64().expect("a count")).sum()
+}
+
+/// Compares a frame with one in which nothing is left out, and returns the share of the patches that were drawn.
+fn drawn_share(mesh: &Path, flags: &str, compares_images: bool) -> Result<f64, String> {
+    let (frame, image) = frame_and_image(mesh, flags)?;
+    let (whole, whole_image) = frame_and_image(mesh, &format!("{flags} --no-cull"))?;
+    let wrong = |what: &str| Err(format!("{} {flags}: {what}: {frame} and {whole}", mesh.display()));
+    if compares_images && image != whole_image {
+        return wrong("another image");
+    }
+    let levels = frame["patches_by_level"].as_array().expect("counts by level");
+    if levels.iter().filter_map(Value::as_u64).sum::<u64>() != patch_count(&frame) {
+        return wrong("the levels are not the sum of the kinds");
+    }
+    if frame["gpu_ms"]["emit"].as_f64() <= Some(0.0) || whole["gpu_ms"]["emit"].as_f64() != Some(0.0) {
+        return wrong("culling takes time exactly where there is some");
+    }
+    if (patch_count(&frame) < patch_count(&whole)) != (frame["triangles"].as_u64() < whole["triangles"].as_u64()) {
+        return wrong("fewer patches have fewer triangles");
+    }
+    Ok(patch_count(&frame) as f64 / patch_count(&whole) as f64)
+}
+
+#[test]
+fn patches_outside_of_the_image_are_left_out_without_a_trace() {
+    let meshes = ["grid_8x8", "hero", "boundary_valences", "boundary_none", "open_cylinder", "mixed_triangles_quads"];
+    let ways = ["--tess 2 --spacing equal", "--tess 5.3", "--tess 3.3 --spacing fractional-even --samples 3"];
+    check_all(&meshes, |mesh| {
+        for way in ways {
+            let flags = format!("--size 90x70 {ALL_LAYERS} --fov 10 {way}");
+            let share = drawn_share(&scene(mesh), &flags, true)?;
+            if share > 0.9 {
+                return Err(format!("{mesh} {flags}: {share} of the patches are drawn"));
+            }
+        }
+        Ok(())
+    });
+}
+
+#[test]
+fn patches_that_are_turned_away_are_left_out() {
+    let meshes = [["genus_2", "cube", "two_components"].map(scene).to_vec(), models()].concat();
+    check_all(&meshes, |mesh| {
+        for way in ["--tess 8 --spacing equal", "--tess 5.3", "--tess 4.4 --spacing fractional-even"] {
+            // Images are compared where only the emit stage differs, in the tests of the render crate: two sides of an
+            // edge agree to rounding, and backs may be seen between them.
+            let share = drawn_share(mesh, &format!("--size 90x70 {way}"), false)?;
+            if !(0.4..0.85).contains(&share) {
+                return Err(format!("{} {way}: {share} of the patches are drawn", mesh.display()));
+            }
+        }
+        Ok(())
+    });
 }
 
 #[test]

@@ -54,7 +54,9 @@ pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
         if timed.is_empty() {
             timed.push(written);
         }
-        let stats = |done: &Done| FrameStats::new(frame, &session, &done.report, done.wall_ms, Some(done.triangles));
+        let counts = &session.surface.tables().counts;
+        let stats =
+            |done: &Done| FrameStats::new(frame, &session, &done.report, done.wall_ms, counts, Some(done.triangles));
         frames.extend(timed.iter().map(stats));
         console.explain(format_args!("wrote {}", path.display()));
     }

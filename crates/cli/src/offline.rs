@@ -12,6 +12,7 @@ use planish_render::{
     preprocess,
 };
 use planish_scene::Camera;
+use planish_subdiv::tables::PatchCounts;
 
 use crate::args::{DeviceArguments, SurfaceArguments, ViewArguments};
 use crate::cage::{Cage, milliseconds};
@@ -141,9 +142,14 @@ impl Session {
     }
 
     /// Makes images and the passes that draw into them, and records a whole frame.
-    pub fn images(&mut self, view: View, layers: bool, cull_back: bool) -> Result<Images> {
+    pub fn images(&mut self, view: View, layers: bool, culling: Culling) -> Result<Images> {
         let desc = self.surface.desc();
-        let options = DrawOptions { view, layers, cull_back };
+        let options = DrawOptions {
+            view,
+            layers,
+            cull_back: culling == Culling::UnseenAndBacks,
+            emit: culling != Culling::Off,
+        };
         let start = Instant::now();
         let passes = DrawPasses::new(&self.device, desc, &options)?;
         self.pipelines_ms += milliseconds(start);
@@ -172,10 +178,40 @@ impl Session {
         Ok((report, milliseconds(start)))
     }
 
+    /// Patches of each level that the frame of `images` that ran last has drawn.
+    pub fn drawn_counts(&self, images: &Images) -> Result<Vec<PatchCounts>> {
+        if images.passes.has_emit() {
+            return Ok(self.surface.download_visible_counts(&self.device)?);
+        }
+        Ok(self.surface.tables().counts.clone())
+    }
+
     /// Number of triangles, by the rules of the tessellator.
     pub fn expected_triangle_count(&self) -> u64 {
         let desc = self.surface.desc();
         triangle_count(self.surface.tables(), &self.factors, desc.method, desc.spacing)
+    }
+}
+
+/// What is left out of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Culling {
+    /// Nothing.
+    Off,
+    /// Patches outside of the view.
+    Unseen,
+    /// These, and what shows its back.
+    UnseenAndBacks,
+}
+
+impl Culling {
+    /// Of a cage as a camera sees it.
+    pub fn new(cage: &Cage, camera: &Camera, no_cull: bool) -> Self {
+        match (no_cull, cage.hides_backs(camera)) {
+            (true, _) => Self::Off,
+            (false, false) => Self::Unseen,
+            (false, true) => Self::UnseenAndBacks,
+        }
     }
 }
 

@@ -12,7 +12,7 @@ use crate::console::Console;
 use crate::frames::{FrameRange, frame_path, has_placeholder};
 use crate::image::{ColorSum, read_layers};
 use crate::jitter::sample_offsets;
-use crate::offline::{Images, Plan, Session, aspect, check_validation, open_device};
+use crate::offline::{Culling, Images, Plan, Session, aspect, check_validation, open_device};
 use crate::stats::{FrameStats, Stats, StatsOutput, drawn_triangle_count};
 
 /// Runs the command.
@@ -25,8 +25,8 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<()> {
     let plan = Plan::new(&cage, &arguments.surface, &arguments.view)?;
     let device = open_device(&arguments.device, console)?;
     let mut session = Session::new(&device, &cage, &plan, console)?;
-    let cull_back = cage.hides_backs(&plan.camera) && !arguments.frames.no_cull;
-    let images = session.images(arguments.shown.into(), !aovs.is_empty(), cull_back)?;
+    let culling = Culling::new(&cage, &plan.camera, arguments.frames.no_cull);
+    let images = session.images(arguments.shown.into(), !aovs.is_empty(), culling)?;
     let mut sum = ColorSum::new(&device, &images.targets)?;
 
     let mut frames = Vec::new();
@@ -87,7 +87,8 @@ fn timed_frames(
     for _ in 0..arguments.frames.repeat.unwrap_or(1) {
         let (report, wall_ms) = session.run(positions, &images.frame)?;
         let triangles = drawn_triangle_count(&report);
-        frames.push(FrameStats::new(frame, session, &report, wall_ms, triangles));
+        let counts = session.drawn_counts(images)?;
+        frames.push(FrameStats::new(frame, session, &report, wall_ms, &counts, triangles));
     }
     Ok(())
 }

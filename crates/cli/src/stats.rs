@@ -6,6 +6,7 @@ use anyhow::{Result, bail};
 use planish_film::{check_text_output, write_text};
 use planish_gpu::{Device, SubmitReport};
 use planish_render::SurfaceMethod;
+use planish_subdiv::tables::PatchCounts;
 use serde::Serialize;
 
 use crate::cage::Cage;
@@ -105,6 +106,7 @@ pub struct GpuStats {
     pub select: f64,
     pub subdivide: f64,
     pub limit: f64,
+    pub emit: f64,
     pub draw: f64,
     pub total: f64,
 }
@@ -118,6 +120,7 @@ impl GpuStats {
             match stage.as_str() {
                 "subdivide" => stats.subdivide += milliseconds,
                 "limit" => stats.limit += milliseconds,
+                "emit" => stats.emit += milliseconds,
                 "draw" => stats.draw += milliseconds,
                 _ => {}
             }
@@ -128,24 +131,30 @@ impl GpuStats {
 }
 
 impl FrameStats {
-    /// Of a frame that was drawn; `triangles` as the device counted them, if it did.
-    pub fn new(frame: i32, session: &Session, report: &SubmitReport, wall_ms: f64, triangles: Option<u64>) -> Self {
-        let tables = session.surface.tables();
-        let counts = tables.total_counts();
+    /// Of a frame that was drawn, with these patches of each level; `triangles` as the device counted them, if it did.
+    pub fn new(
+        frame: i32,
+        session: &Session,
+        report: &SubmitReport,
+        wall_ms: f64,
+        counts: &[PatchCounts],
+        triangles: Option<u64>,
+    ) -> Self {
+        let last_level = session.surface.tables().last_level;
         let is_fas = session.surface.desc().method == SurfaceMethod::Fas;
-        let is_cut_short = is_fas && session.tess_factor > (tables.last_level as f32).exp2();
-        let quad = u64::from(counts.filling);
+        let is_cut_short = is_fas && session.tess_factor > (last_level as f32).exp2();
+        let sum = |of: fn(&PatchCounts) -> u32| counts.iter().map(|level| u64::from(of(level))).sum();
+        let (quad, transition) = (sum(|level| level.filling), sum(|level| level.transition));
         Self {
             frame,
             patches: PatchStats {
-                regular: counts.regular.into(),
-                transition: counts.transition.into(),
+                regular: sum(|level| level.regular),
+                transition,
                 quad,
                 truncated: if is_cut_short { quad } else { 0 },
             },
-            subpatches: counts.transition.into(),
-            patches_by_level: tables
-                .counts
+            subpatches: transition,
+            patches_by_level: counts
                 .iter()
                 .map(|c| u64::from(c.regular) + u64::from(c.transition) + u64::from(c.filling))
                 .collect(),
@@ -273,15 +282,16 @@ mod tests {
             sorted(vec!["frame", "patches", "subpatches", "patches_by_level", "triangles", "gpu_ms", "wall_ms"]);
         assert_eq!(keys(frame), expected);
         assert_eq!(keys(&frame["patches"]), ["quad", "regular", "transition", "truncated"]);
-        assert_eq!(keys(&frame["gpu_ms"]), ["density", "draw", "limit", "select", "subdivide", "total"]);
+        assert_eq!(keys(&frame["gpu_ms"]), ["density", "draw", "emit", "limit", "select", "subdivide", "total"]);
         assert_eq!(frame["triangles"], json!(0));
     }
 
     #[test]
     fn stages_last_from_the_time_before_to_their_own() {
-        let times = [("start", 0.0), ("subdivide", 2.0), ("limit", 2.5), ("draw", 10.0)];
+        let times = [("start", 0.0), ("subdivide", 2.0), ("limit", 2.5), ("emit", 3.0), ("draw", 10.0)];
         let stats = GpuStats::new(&times.map(|(name, time)| (name.to_owned(), time)));
-        assert_eq!((stats.subdivide, stats.limit, stats.draw, stats.total), (2.0, 0.5, 7.5, 10.0));
+        assert_eq!((stats.subdivide, stats.limit, stats.emit, stats.draw), (2.0, 0.5, 0.5, 7.0));
+        assert_eq!(stats.total, 10.0);
         assert_eq!(GpuStats::new(&[]), GpuStats::default());
     }
 

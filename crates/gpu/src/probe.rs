@@ -31,6 +31,8 @@ pub struct Limits {
     pub largest_heap: u64,
     /// Buffers that one transform feedback can write at once; 0 without the feature.
     pub max_feedback_buffers: u32,
+    /// Bits behind the point of a vertex' place in pixels, to which the rasterizer rounds it.
+    pub sub_pixel_bits: u32,
 }
 
 /// One physical device and all that is known of it before it is opened.
@@ -82,6 +84,7 @@ impl Candidate {
             max_buffer_size: newer.max_buffer_size,
             largest_heap: memory.memory_heaps_as_slice().iter().map(|heap| heap.size).max().unwrap_or(0),
             max_feedback_buffers: newer.max_feedback_buffers,
+            sub_pixel_bits: core.limits.sub_pixel_precision_bits,
         };
         Ok(Self { physical, facts, limits, queue_family: family as u32 })
     }

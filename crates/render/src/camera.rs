@@ -19,6 +19,16 @@ impl FrameCamera {
         self.projection * self.world_to_camera
     }
 
+    /// Where the camera is, in world space.
+    pub fn eye(&self) -> Vec3 {
+        self.world_to_camera.as_dmat4().inverse().w_axis.truncate().as_vec3()
+    }
+
+    /// Depth of the near plane: all depths are seen as this over themselves.
+    pub fn near(&self) -> f32 {
+        self.projection.w_axis.z
+    }
+
     /// The same camera with the image moved right and down by a fraction of a pixel, for one sample of several.
     pub fn jittered(&self, pixels: Vec2) -> Self {
         let size = Vec2::new(self.size[0] as f32, self.size[1] as f32);

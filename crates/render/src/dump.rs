@@ -143,7 +143,7 @@ impl DumpPasses {
     ) -> Result<Vec<CapturedVertex>, Error> {
         let arguments = draw_arguments(0, count, self.method, device.is_software());
         self.arguments.write(0, &[arguments])?;
-        let push = frame.push(surface, *kind, first, &NO_CAMERA);
+        let push = frame.push(surface, *kind, &surface.buffers.list, first, &NO_CAMERA);
         let mut encoder = Encoder::new(device, "dump")?;
         let feedback = Feedback { name: "dump", targets: &[&self.capture], counters: &self.counter };
         let stride = size_of::<DrawArguments>() as u32;

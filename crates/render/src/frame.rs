@@ -33,15 +33,22 @@ impl FrameConstants {
         &self.buffer
     }
 
-    /// Push constants for the draw of a kind's list entries from `first_entry` on.
-    pub(crate) fn push(&self, surface: &Surface, kind: PatchKind, first_entry: u32, camera: &FrameCamera) -> DrawPush {
+    /// Push constants for the draw of a kind's entries of a list from `first_entry` on.
+    pub(crate) fn push(
+        &self,
+        surface: &Surface,
+        kind: PatchKind,
+        list: &Buffer,
+        first_entry: u32,
+        camera: &FrameCamera,
+    ) -> DrawPush {
         let buffers = &surface.buffers;
         let [dx, dy] = camera.pixel_steps();
         let [width, height] = camera.size;
         let is_filling = kind == PatchKind::Filling;
         DrawPush {
             view_projection: camera.view_projection().to_cols_array_2d(),
-            list: address::<planish_shaders::Indices>(&buffers.list).offset(u64::from(first_entry)),
+            list: address::<planish_shaders::Indices>(list).offset(u64::from(first_entry)),
             points: address(if is_filling { &buffers.limits } else { &buffers.points }),
             patches: address(if is_filling { &buffers.quads } else { &buffers.patches }),
             frame: address(&self.buffer),

@@ -1,9 +1,9 @@
 //! Render lists: which patches are drawn, and the indirect draws that draw them.
 //!
-//! In static FAS they depend on the tables and the factors alone. A list's draws have a shape that depends on the device:
-//! hardware gets one `{ vertices: N, instances: 1 }`; a software driver, whose tessellation costs the square of what one
-//! instance generates and a fixed price besides, gets batches of about [`BATCH_VERTICES`] generated vertices. The shaders
-//! add the vertex and the instance index and do not know.
+//! In static FAS they depend on the tables and the factors alone. A list is drawn in batches, of which the emit stage takes
+//! out the patches that cannot be seen. They have at most [`MAX_BATCH`] patches; on a software driver, whose tessellation
+//! costs the square of what one instance generates and a fixed price besides, they generate about [`BATCH_VERTICES`]
+//! vertices. The shaders add the vertex and the instance index and do not know.
 
 use std::ops::Range;
 
@@ -55,28 +55,54 @@ impl Lists {
         lists
     }
 
-    /// The indirect draws of all lists, and each list's part of them.
-    pub fn draws(&self, tables: &Tables, shape: &DrawShape<'_>) -> (Vec<DrawArguments>, [Range<u32>; 3]) {
-        let mut draws = Vec::new();
-        let mut parts: [Range<u32>; 3] = Default::default();
+    /// A kind's entries.
+    pub fn of_kind(&self, kind: PatchKind) -> &[u32] {
+        let range = &self.ranges[kind as usize];
+        &self.entries[range.start as usize..range.end as usize]
+    }
+
+    /// The batches of all lists.
+    pub fn batches(&self, tables: &Tables, shape: &DrawShape<'_>) -> Batches {
+        let mut batches = Batches::default();
         for kind in PatchKind::ALL {
+            let draws = &mut batches.draws;
             let first = draws.len() as u32;
-            let range = self.ranges[kind as usize].clone();
-            if !shape.is_software || shape.method == SurfaceMethod::Uniform {
-                draws.push(draw_arguments(0, range.len() as u32, shape.method, shape.is_software));
+            let entries = self.of_kind(kind);
+            if shape.method == SurfaceMethod::Uniform {
+                draws.push(draw_arguments(0, entries.len() as u32, shape.method, shape.is_software));
             } else {
-                let entries = &self.entries[range.start as usize..range.end as usize];
-                push_batches(&mut draws, entries.iter().map(|&entry| shape.vertex_count(tables, kind, entry)));
+                let vertex_counts = entries.iter().map(|&entry| shape.vertex_count(tables, kind, entry));
+                push_batches(draws, vertex_counts, if shape.is_software { BATCH_VERTICES } else { u32::MAX });
             }
-            parts[kind as usize] = first..draws.len() as u32;
+            batches.ranges[kind as usize] = first..draws.len() as u32;
         }
-        (draws, parts)
+        batches
     }
 }
 
+/// The indirect draws of all lists, one after another. A draw's first vertex is its place in the kind's list.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Batches {
+    /// All draws.
+    pub draws: Vec<DrawArguments>,
+    /// Each kind's part of the draws.
+    pub ranges: [Range<u32>; 3],
+}
+
+impl Batches {
+    /// A kind's draws.
+    pub fn of_kind(&self, kind: PatchKind) -> &[DrawArguments] {
+        let range = &self.ranges[kind as usize];
+        &self.draws[range.start as usize..range.end as usize]
+    }
+}
+
+/// The most patches of a batch: a group of the emit stage remembers one bit for each.
+pub const MAX_BATCH: u32 = 256;
+
 /// Vertices that a draw should generate on a software driver: on Mesa 22.3's, larger batches cost more by their square,
 /// smaller ones by their number (`planish bench --tess`).
-const BATCH_VERTICES: u32 = 512;
+const BATCH_VERTICES: u32 = 1024;
 
 /// What the shape of draws depends on.
 #[derive(Clone, Copy, Debug)]
@@ -105,12 +131,13 @@ impl DrawShape<'_> {
     }
 }
 
-/// One draw for each run of patches that together generate about [`BATCH_VERTICES`].
-fn push_batches(draws: &mut Vec<DrawArguments>, vertex_counts: impl Iterator<Item = u32>) {
+/// One draw for each run of patches that together generate at most `max_vertices`, or of a single one that generates more.
+fn push_batches(draws: &mut Vec<DrawArguments>, vertex_counts: impl Iterator<Item = u32>, max_vertices: u32) {
     let (mut vertices, mut batch) =
         (0, DrawArguments { vertex_count: 0, instance_count: 1, first_vertex: 0, first_instance: 0 });
     for count in vertex_counts {
-        if batch.vertex_count > 0 && vertices + count > BATCH_VERTICES {
+        let is_full = vertices + count > max_vertices || batch.vertex_count == MAX_BATCH;
+        if batch.vertex_count > 0 && is_full {
             draws.push(batch);
             batch = DrawArguments { vertex_count: 0, first_vertex: batch.first_vertex + batch.vertex_count, ..batch };
             vertices = 0;
@@ -144,7 +171,7 @@ mod tests {
     #[test]
     fn batches_cover_every_patch_once_and_stay_small() {
         let mut draws = Vec::new();
-        push_batches(&mut draws, (0..1000).map(|i| if i < 10 { 4225 } else { 25 }));
+        push_batches(&mut draws, (0..1000).map(|i| if i < 10 { 4225 } else { 25 }), BATCH_VERTICES);
         let mut next = 0;
         for draw in &draws {
             assert_eq!((draw.first_vertex, draw.instance_count), (next, 1));
@@ -156,9 +183,16 @@ mod tests {
     }
 
     #[test]
+    fn without_a_bound_on_vertices_batches_are_as_large_as_they_may_be() {
+        let mut draws = Vec::new();
+        push_batches(&mut draws, (0..1000).map(|_| 4225), u32::MAX);
+        assert_eq!(draws.iter().map(|draw| draw.vertex_count).collect::<Vec<_>>(), [256, 256, 256, 232]);
+    }
+
+    #[test]
     fn an_empty_list_has_no_batch() {
         let mut draws = Vec::new();
-        push_batches(&mut draws, std::iter::empty());
+        push_batches(&mut draws, std::iter::empty(), BATCH_VERTICES);
         assert!(draws.is_empty());
     }
 }

@@ -7,15 +7,19 @@ use crate::error::Error;
 
 /// A compute pipeline without specialization constants.
 pub(crate) fn compute_pipeline(device: &Device, module: &ShaderModule) -> Result<ComputePipeline, Error> {
+    specialized_compute_pipeline(device, module, module.local_size.map_or(1, |size| size[0]), &[])
+}
+
+/// A compute pipeline whose groups have this many threads by these specialization constants.
+pub(crate) fn specialized_compute_pipeline(
+    device: &Device,
+    module: &ShaderModule,
+    local_size: u32,
+    spec: &[SpecConstant],
+) -> Result<ComputePipeline, Error> {
     Ok(ComputePipeline::new(
         device,
-        &ComputePipelineDesc {
-            name: module.name,
-            spirv: module.spirv,
-            push_size: module.push_size,
-            local_size: module.local_size.map_or(1, |size| size[0]),
-            spec: &[],
-        },
+        &ComputePipelineDesc { name: module.name, spirv: module.spirv, push_size: module.push_size, local_size, spec },
     )?)
 }
 

@@ -1,20 +1,21 @@
 //! A cage on the GPU: its tables, and the buffers that its frames fill.
 
-use std::ops::Range;
 use std::time::Instant;
 
-use planish_gpu::{Buffer, Device, Encoder};
+use planish_gpu::{Buffer, Device, DrawArguments, Encoder, Transfer};
+use planish_shaders::{EmitCounts, EmitLevel};
 use planish_subdiv::ControlMesh;
 use planish_subdiv::mesh::HierarchicalEdit;
 use planish_subdiv::patch::{FillingQuad, PatchInfo, RegularPatch};
 use planish_subdiv::refine::{CreasePatches, RefineOptions, Refinement};
-use planish_subdiv::tables::Tables;
+use planish_subdiv::tables::{PatchCounts, Tables};
 
 use crate::density::FACTOR_COUNT;
 use crate::edit_points::targets;
+use crate::emit::{Emitted, emit_levels, patch_counts};
 use crate::error::Error;
 use crate::limit::Limit;
-use crate::lists::{DrawShape, Lists};
+use crate::lists::{Batches, DrawShape, Lists, PatchKind};
 use crate::options::{Spacing, SurfaceMethod};
 use crate::subdivide::Subdivide;
 use crate::tessellation::filling_segment_count;
@@ -58,7 +59,7 @@ pub struct MemoryBytes {
     pub tables: u64,
     /// Points of all levels and limit points.
     pub points: u64,
-    /// Render lists and indirect draws.
+    /// Render lists and indirect draws, and what the emit stage makes of them.
     pub lists: u64,
 }
 
@@ -104,6 +105,13 @@ pub(crate) struct Buffers {
     pub quads: Buffer,
     pub list: Buffer,
     pub draws: Buffer,
+    /// What the emit stage makes of the list.
+    pub visible_list: Buffer,
+    /// What it makes of the draws.
+    pub visible_draws: Buffer,
+    /// Patches of `visible_list`, by kind.
+    pub visible_counts: Buffer,
+    pub emit_levels: Buffer,
 }
 
 /// A cage on the GPU. Everything is kept alive by the surface: it must outlive the frames recorded with it.
@@ -111,8 +119,8 @@ pub struct Surface {
     pub(crate) desc: SurfaceDesc,
     pub(crate) tables: Tables,
     pub(crate) lists: Lists,
-    /// Each list's part of the indirect draws.
-    pub(crate) draw_ranges: [Range<u32>; 3],
+    pub(crate) batches: Batches,
+    pub(crate) emit_levels: Vec<EmitLevel>,
     pub(crate) buffers: Buffers,
     times: PreprocessTimes,
     memory: MemoryBytes,
@@ -133,7 +141,9 @@ impl Surface {
         let lists = Lists::new(&tables);
         let shape =
             DrawShape { method: desc.method, spacing: desc.spacing, factors, is_software: device.is_software() };
-        let (draws, draw_ranges) = lists.draws(&tables, &shape);
+        let batches = lists.batches(&tables, &shape);
+        let emit_levels = emit_levels(&tables, factors, desc.spacing);
+        let (entry_count, draw_count) = (lists.entries.len() as u32, batches.draws.len() as u32);
         let stencils = &tables.stencils;
         let limits = &tables.limits;
         let buffers = Buffers {
@@ -151,11 +161,15 @@ impl Surface {
             patches: table(device, "patches", &patches(&tables))?,
             quads: filling_quads(device, &tables)?,
             list: table(device, "render lists", &lists.entries)?,
-            draws: table(device, "draws", &draws)?,
+            draws: table(device, "draws", &batches.draws)?,
+            visible_list: array::<u32>(device, "visible lists", entry_count)?,
+            visible_draws: array::<DrawArguments>(device, "visible draws", draw_count)?,
+            visible_counts: array::<EmitCounts>(device, "visible counts", PatchKind::ALL.len() as u32)?,
+            emit_levels: table(device, "emit levels", &emit_levels)?,
         };
         times.upload = milliseconds(start);
         let memory = buffers.memory();
-        let surface = Self { desc, tables, lists, draw_ranges, buffers, times, memory };
+        let surface = Self { desc, tables, lists, batches, emit_levels, buffers, times, memory };
         surface.set_cage(&mesh.positions)?;
         surface.set_edits(&mesh.edits)?;
         Ok(surface)
@@ -200,6 +214,16 @@ impl Surface {
         &self.lists
     }
 
+    /// The draws of the render lists.
+    pub fn batches(&self) -> &Batches {
+        &self.batches
+    }
+
+    /// How the patches of each level are tessellated.
+    pub fn emit_levels(&self) -> &[EmitLevel] {
+        &self.emit_levels
+    }
+
     /// Times of the work done once.
     pub fn times(&self) -> PreprocessTimes {
         self.times
@@ -219,6 +243,22 @@ impl Surface {
     pub fn download_limits(&self, device: &Device) -> Result<Vec<planish_shaders::LimitPoint>, Error> {
         Ok(device.download(&self.buffers.limits, 0, self.tables.limit_point_count() as usize)?)
     }
+
+    /// How many patches of each level the last frame that had an emit stage has drawn; waits for the device.
+    pub fn download_visible_counts(&self, device: &Device) -> Result<Vec<PatchCounts>, Error> {
+        let counts = device.download(&self.buffers.visible_counts, 0, PatchKind::ALL.len())?;
+        Ok(patch_counts(&counts, self.tables.counts.len()))
+    }
+
+    /// What the emit stage of the last frame made; waits for the device. For tests.
+    pub fn download_emitted(&self, device: &Device) -> Result<Emitted, Error> {
+        let buffers = &self.buffers;
+        Ok(Emitted {
+            entries: device.download(&buffers.visible_list, 0, self.lists.entries.len())?,
+            draws: device.download(&buffers.visible_draws, 0, self.batches.draws.len())?,
+            counts: self.download_visible_counts(device)?,
+        })
+    }
 }
 
 /// The stages that make a frame's points, before anything is drawn.
@@ -237,7 +277,11 @@ impl PointStages {
     pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
         surface.buffers.keep(encoder);
         encoder.timestamp("start");
-        encoder.copy_buffer(&surface.buffers.cage, &surface.buffers.points);
+        let Buffers { cage, points, visible_counts, .. } = &surface.buffers;
+        encoder.transfer(&[
+            Transfer::Copy { from: cage, from_offset: 0, to: points, to_offset: 0, size: cage.size() },
+            Transfer::Fill { buffer: visible_counts, offset: 0, size: visible_counts.size(), value: 0 },
+        ]);
         self.subdivide.record(encoder, surface);
         encoder.timestamp("subdivide");
         self.limit.record(encoder, surface);
@@ -246,7 +290,7 @@ impl PointStages {
 }
 
 impl Buffers {
-    fn all(&self) -> [&Buffer; 15] {
+    fn all(&self) -> [&Buffer; 19] {
         [
             &self.cage,
             &self.points,
@@ -263,6 +307,10 @@ impl Buffers {
             &self.quads,
             &self.list,
             &self.draws,
+            &self.visible_list,
+            &self.visible_draws,
+            &self.visible_counts,
+            &self.emit_levels,
         ]
     }
 
@@ -272,7 +320,9 @@ impl Buffers {
 
     fn memory(&self) -> MemoryBytes {
         let points = self.cage.size() + self.points.size() + self.limits.size();
-        let lists = self.list.size() + self.draws.size();
+        let visible = [&self.visible_list, &self.visible_draws, &self.visible_counts, &self.emit_levels];
+        let visible: u64 = visible.iter().map(|buffer| buffer.size()).sum();
+        let lists = self.list.size() + self.draws.size() + visible;
         let all: u64 = self.all().iter().map(|buffer| buffer.size()).sum();
         MemoryBytes { tables: all - points - lists, points, lists }
     }

@@ -35,6 +35,22 @@ fn shared_points_are_computed_without_contraction() {
 }
 
 #[test]
+fn patches_are_left_out_by_arithmetic_without_contraction() {
+    let modules = [
+        &shaders::emit_bspline_comp::PROGRAM,
+        &shaders::emit_corners_comp::PROGRAM,
+        &shaders::emit_midpoints_comp::PROGRAM,
+    ];
+    for module in modules {
+        let report = no_contraction_report(module.spirv).expect("valid SPIR-V");
+        assert!(report.iter().map(|function| function.no_contraction).sum::<u32>() > 20, "{}", module.name);
+        for function in report {
+            assert_eq!((function.contractible, function.fma, function.undecorable), (0, 0, 0), "{function:?}");
+        }
+    }
+}
+
+#[test]
 fn point_kernels_are_computed_without_contraction() {
     for module in [&shaders::subdivide_comp::PROGRAM, &shaders::limit_comp::PROGRAM] {
         let report = no_contraction_report(module.spirv).expect("valid SPIR-V");

@@ -41,8 +41,18 @@ pub fn run(bench: &Bench, device: &Device, cage: &Cage) -> Result<Vec<FactorRow>
 
 impl Row for FactorRow {
     fn headings(with_peer: bool) -> Vec<&'static str> {
-        let mut headings =
-            vec!["tess", "level", "patches", "triangles", "subdivide ms", "limit ms", "draw ms", "total ms", "wall ms"];
+        let mut headings = vec![
+            "tess",
+            "level",
+            "patches",
+            "triangles",
+            "subdivide ms",
+            "limit ms",
+            "emit ms",
+            "draw ms",
+            "total ms",
+            "wall ms",
+        ];
         if with_peer {
             headings.extend(["peer refine ms", "peer draw ms", "peer total ms", "wall / peer"]);
         }
@@ -51,7 +61,7 @@ impl Row for FactorRow {
 
     fn cells(&self, with_peer: bool) -> Vec<String> {
         let (fas, gpu) = (&self.fas, &self.fas.gpu_ms);
-        let times = [gpu.subdivide, gpu.limit, gpu.draw, gpu.total, fas.wall_ms];
+        let times = [gpu.subdivide, gpu.limit, gpu.emit, gpu.draw, gpu.total, fas.wall_ms];
         let counts = [u64::from(fas.level), fas.patch_count(), fas.triangles];
         let mut cells = vec![self.tess.to_string()];
         cells.extend(counts.iter().map(u64::to_string));

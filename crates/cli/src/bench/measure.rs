@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::{Bench, median};
 use crate::cage::{Cage, milliseconds};
-use crate::offline::{Plan, Session, frame_camera};
+use crate::offline::{Culling, Plan, Session, frame_camera};
 use crate::stats::{FrameStats, GpuStats, PatchStats, drawn_triangle_count};
 
 /// A method's frames at one setting.
@@ -52,7 +52,7 @@ pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) ->
         tess_factor,
     };
     let mut session = Session::new(device, cage, &plan, bench.console)?;
-    let images = session.images(View::Shaded, false, cage.hides_backs(&plan.camera) && !arguments.no_cull)?;
+    let images = session.images(View::Shaded, false, Culling::new(cage, &plan.camera, arguments.no_cull))?;
     let mut cage_motion = CageMotion::new(cage);
     session.run(cage_motion.positions(0), &images.frame)?;
     let mut frames = Vec::new();
@@ -60,7 +60,8 @@ pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) ->
         let start = Instant::now();
         let (report, _) = session.run(cage_motion.positions(frame), &images.frame)?;
         let wall_ms = milliseconds(start);
-        frames.push(FrameStats::new(frame, &session, &report, wall_ms, drawn_triangle_count(&report)));
+        let counts = session.drawn_counts(&images)?;
+        frames.push(FrameStats::new(frame, &session, &report, wall_ms, &counts, drawn_triangle_count(&report)));
     }
     let (surface, times) = (&session.surface, session.surface.times());
     Ok(Measured {
@@ -90,6 +91,7 @@ fn medians(level: u32, frames: &[FrameStats]) -> Measured {
         gpu_ms: GpuStats {
             subdivide: of(|frame| frame.gpu_ms.subdivide),
             limit: of(|frame| frame.gpu_ms.limit),
+            emit: of(|frame| frame.gpu_ms.emit),
             draw: of(|frame| frame.gpu_ms.draw),
             total: of(|frame| frame.gpu_ms.total),
             ..GpuStats::default()

@@ -1,0 +1,347 @@
+//! Whether nothing can be seen of a patch. CPU twin of `glsl/shared/visibility.glsl`, operation by operation.
+//!
+//! **Outside of the view**: all points of the patch's convex hull lie beyond one plane of the frustum.
+//!
+//! **Turned away**: all triangles that the patch can be tessellated into show their back. A triangle at d from the eye with
+//! sides e and f shows it when `d . (e x f) > 0`. Let e be the change of the surface over a step r along u, and f that over
+//! a step t along v. Then e is r times a mean of the derivatives S_u, f is t times one of S_v, and means of derivatives are
+//! weighted means of the 12 vectors between neighbouring Bezier points, times 3. The product is linear in each: with
+//! unit vectors u_i and v_j along those,
+//!
+//! > d . (e x f) >= r U t V min d . (u_i x v_j), where |e| <= r U, |f| <= t V
+//!
+//! and U and V are the same weighted means of the vectors' lengths. For d within a radius R of a vector m at the patch,
+//! `d . (u_i x v_j) >= m . (u_i x v_j) - R`. This does not depend on how finely the patch is tessellated, and 144 products
+//! are hardly coarser than the patch itself; a bounding cone of normals (Sederberg and Meyers 1988) is.
+//!
+//! So a patch is turned away if `min m . (u_i x v_j) > R + x (|m| + R)`, with slack x for
+//!
+//! - **rounding**, and the rasterizer's grid: a corner moves by `error` at most, a side by twice that, and the product
+//!   changes by `2 error (|e| + |f|) + 4 error^2` times |d|: it needs `x > n + n^2`, n = 2 error (1 / (r U) + 1 / (t V)).
+//! - **uneven rings.** Where an edge has other points than the row of points beside it, triangles between the two have a side
+//!   f = s S_u + t S_v that runs along neither. Beside e = r S'_u of the row, `d . (e x f)` has the further term `r s d .
+//!   (S'_u x S_u)`, in which S'_u and S_u, means over steps r and s from one point, differ by |r - s| / 2 times the second
+//!   derivative at most: it needs `x > s |r - s| / (2 t) |S_uu| / |S_v|` besides, and in n there is s / (r t) U / (U V).
+//!
+//! [`crate::tessellation::emit_level`] knows the shortest r and t and the longest s.
+
+use std::array::from_fn;
+
+use planish_shaders::{EmitLevel, EmitView};
+
+type Vec3 = [f32; 3];
+
+// The constants of the shader, by the same names.
+const ROUNDING: f32 = 1.907_348_6e-6;
+const TURN_MARGIN: f32 = 1e-4;
+const CUBE_DIAGONAL: f32 = 1.732_050_9;
+
+fn add(a: Vec3, b: Vec3) -> Vec3 {
+    from_fn(|c| a[c] + b[c])
+}
+
+fn sub(a: Vec3, b: Vec3) -> Vec3 {
+    from_fn(|c| a[c] - b[c])
+}
+
+fn times(a: Vec3, factor: f32) -> Vec3 {
+    a.map(|c| c * factor)
+}
+
+fn over(a: Vec3, divisor: f32) -> Vec3 {
+    a.map(|c| c / divisor)
+}
+
+fn dot(a: Vec3, b: Vec3) -> f32 {
+    (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
+}
+
+fn cross(a: Vec3, b: Vec3) -> Vec3 {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn largest_component(a: Vec3) -> f32 {
+    a[0].abs().max(a[1].abs()).max(a[2].abs())
+}
+
+fn sum_of_components(a: Vec3) -> f32 {
+    (a[0].abs() + a[1].abs()) + a[2].abs()
+}
+
+struct Scale {
+    factor: f32,
+    eye: Vec3,
+    near: f32,
+    rounding: f32,
+    eye_rounding: f32,
+}
+
+impl Scale {
+    fn new(view: &EmitView, unit: f32, points: &[Vec3]) -> Self {
+        let (mut largest_offset, mut largest) = (0.0_f32, 0.0_f32);
+        for &point in points {
+            largest_offset = largest_offset.max(largest_component(sub(point, times(view.eye, unit))));
+            largest = largest.max(largest_component(point));
+        }
+        let factor = 1.0 / largest_offset.max(f32::MIN_POSITIVE);
+        let eye = times(times(view.eye, unit), factor);
+        Self {
+            factor,
+            eye,
+            near: (view.near * unit) * factor,
+            rounding: ROUNDING * (largest * factor),
+            eye_rounding: ROUNDING * largest_component(eye),
+        }
+    }
+
+    fn error(&self, view: &EmitView) -> f32 {
+        self.rounding + CUBE_DIAGONAL * view.snap
+    }
+}
+
+fn outside_planes(d: Vec3, view: &EmitView, scale: &Scale) -> u32 {
+    let (x, y, w) = (dot(view.clip_x, d), dot(view.clip_y, d), dot(view.clip_w, d));
+    let noise = (scale.rounding + scale.eye_rounding) + ROUNDING;
+    let depth_noise = sum_of_components(view.clip_w) * noise;
+    let x_noise = -(sum_of_components(view.clip_x) * noise + depth_noise);
+    let y_noise = -(sum_of_components(view.clip_y) * noise + depth_noise);
+    u32::from(w + x < x_noise)
+        | u32::from(w - x < x_noise) << 1
+        | u32::from(w + y < y_noise) << 2
+        | u32::from(w - y < y_noise) << 3
+        | u32::from(w - scale.near < -depth_noise) << 4
+}
+
+/// Points of a cubic Bezier curve, times 6, from those of a B-spline.
+fn bezier_points([p0, p1, p2, p3]: [Vec3; 4]) -> [Vec3; 4] {
+    [
+        add(add(p0, times(p1, 4.0)), p2),
+        add(times(p1, 4.0), times(p2, 2.0)),
+        add(times(p1, 2.0), times(p2, 4.0)),
+        add(add(p1, times(p2, 4.0)), p3),
+    ]
+}
+
+/// Points of a bicubic Bezier patch, times 36, from those of a B-spline.
+fn bezier_patch(p: &[Vec3; 16]) -> [Vec3; 16] {
+    let mut row = *p;
+    for i in [0, 4, 8, 12] {
+        row[i..i + 4].copy_from_slice(&bezier_points(from_fn(|j| p[i + j])));
+    }
+    let mut b = row;
+    for i in 0..4 {
+        for (j, point) in bezier_points(from_fn(|j| row[4 * j + i])).into_iter().enumerate() {
+            b[4 * j + i] = point;
+        }
+    }
+    b
+}
+
+/// Bounds on the lengths of the tangents along one direction, and on the change of them.
+struct TangentBounds {
+    least: f32,
+    most: f32,
+    change: f32,
+}
+
+/// Unit vectors along the 12 tangents at the Bezier points, and their bounds.
+fn tangents_of(b: &[Vec3; 16], step: usize, row: usize) -> ([Vec3; 12], TangentBounds) {
+    let (mut least, mut most) = (f32::MAX, 0.0_f32);
+    let tangents = from_fn(|i| {
+        let at = i / 3 * row + i % 3 * step;
+        let tangent = sub(b[at + step], b[at]);
+        let square = dot(tangent, tangent);
+        least = least.min(square);
+        most = most.max(square);
+        over(tangent, square.max(f32::MIN_POSITIVE).sqrt())
+    });
+    let change = (0..8).fold(0.0_f32, |change, i| {
+        let at = i / 2 * row + i % 2 * step;
+        let bend = sub(sub(b[at + 2 * step], b[at + step]), sub(b[at + step], b[at]));
+        change.max(dot(bend, bend))
+    });
+    (tangents, TangentBounds { least: 3.0 * least.sqrt(), most: 3.0 * most.sqrt(), change: 6.0 * change.sqrt() })
+}
+
+/// The x of the module's text.
+fn slack_of(u: &TangentBounds, v: &TangentBounds, level: &EmitLevel, is_uneven: bool, error: f32) -> f32 {
+    let (grain, skew, most) =
+        if is_uneven { (level.uneven_grain, level.skew, u.most.max(v.most)) } else { (level.grain, 0.0, 0.0) };
+    let noise = (((2.0 * error) * grain) * ((u.least + v.least) + most)) / (u.least * v.least);
+    let turn = skew * (u.change / v.least).max(v.change / u.least);
+    (noise + noise * noise) + (turn + TURN_MARGIN)
+}
+
+/// Whether nothing of a bicubic patch can be seen, by its B-spline control points. `is_uneven` where it has an edge with
+/// other points than its own rows.
+pub fn is_patch_unseen(points: &[Vec3; 16], view: &EmitView, level: &EmitLevel, is_uneven: bool) -> bool {
+    let b = bezier_patch(points);
+    let scale = Scale::new(view, 36.0, &b);
+    let b = b.map(|point| times(point, scale.factor));
+    let middle = sub(times(add(add(b[0], b[3]), add(b[12], b[15])), 0.25), scale.eye);
+    let (mut planes, mut square_radius) = (31, 0.0_f32);
+    for &point in &b {
+        let d = sub(point, scale.eye);
+        let around = sub(d, middle);
+        planes &= outside_planes(d, view, &scale);
+        square_radius = square_radius.max(dot(around, around));
+    }
+    let (along_u, u) = tangents_of(&b, 1, 4);
+    let (along_v, v) = tangents_of(&b, 4, 1);
+    let across_v = along_v.map(|v| cross(v, middle));
+    let products = along_u.iter().flat_map(|&u| across_v.iter().map(move |&v| dot(u, v)));
+    let product = products.fold(f32::MAX, f32::min);
+    let radius = square_radius.sqrt();
+    let farthest = dot(middle, middle).sqrt() + radius;
+    let error = scale.rounding + farthest * view.snap;
+    let least = (radius + farthest * slack_of(&u, &v, level, is_uneven, error)) + 2.0 * scale.eye_rounding;
+    planes != 0 || (view.cull_back != 0 && product > least)
+}
+
+fn is_triangle_turned([d0, d1, d2]: [Vec3; 3], error: f32, eye_rounding: f32) -> bool {
+    let (a, b) = (sub(d1, d0), sub(d2, d0));
+    let (a_length, b_length) = (dot(a, a).sqrt(), dot(b, b).sqrt());
+    let area = a_length * b_length;
+    let noise = TURN_MARGIN * area + (2.0 * error) * ((a_length + b_length) + 2.0 * error);
+    let least = dot(d0, d0).sqrt() * noise + (2.0 * eye_rounding) * area;
+    dot(d0, cross(a, b)) > least
+}
+
+/// Whether nothing of flat quads between some points can be seen, split along either diagonal.
+pub fn are_quads_unseen(points: &[Vec3], quads: &[[usize; 4]], view: &EmitView) -> bool {
+    let scale = Scale::new(view, 1.0, points);
+    let offsets: Vec<Vec3> = points.iter().map(|&p| sub(times(p, scale.factor), scale.eye)).collect();
+    let planes = offsets.iter().fold(31, |planes, &d| planes & outside_planes(d, view, &scale));
+    let error = scale.error(view);
+    let is_turned = |&[a, b, c, d]: &[usize; 4]| {
+        [[a, b, c], [a, c, d], [a, b, d], [b, c, d]]
+            .into_iter()
+            .all(|corners| is_triangle_turned(corners.map(|i| offsets[i]), error, scale.eye_rounding))
+    };
+    planes != 0 || (view.cull_back != 0 && quads.iter().all(is_turned))
+}
+
+#[cfg(test)]
+mod tests {
+    use planish_subdiv::patch::evaluate;
+
+    use super::*;
+
+    /// A linear congruential generator's numbers between -1 and 1.
+    struct Random(u64);
+
+    impl Random {
+        fn number(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
+        }
+
+        fn part(&mut self) -> f64 {
+            0.5 * self.number() + 0.5
+        }
+
+        /// Control points of a bent, sheared, uneven patch.
+        fn patch(&mut self) -> [Vec3; 16] {
+            let (bend, noise, shear) = (0.3 * self.number(), 0.15 * self.part(), 0.7 * self.number());
+            from_fn(|i| {
+                let (u, v) = ((i % 4) as f64 - 1.5, (i / 4) as f64 - 1.5);
+                let height = bend * (u * u + shear * v * v);
+                [u + shear * v, v, height].map(|c| (c + noise * self.number()) as f32)
+            })
+        }
+    }
+
+    /// A view of everything from `eye`, without a grid.
+    fn view_from(eye: Vec3) -> EmitView {
+        EmitView { eye, cull_back: 1, ..EmitView::default() }
+    }
+
+    /// Patches that are turned away from an eye, and it.
+    fn turned_away(level: &EmitLevel, is_uneven: bool) -> Vec<([[f64; 3]; 16], [f64; 3])> {
+        let mut random = Random(7);
+        let mut found = Vec::new();
+        for _ in 0..4000 {
+            let points = random.patch();
+            let eye = [6.0 * random.number(), 6.0 * random.number(), -4.0 * random.part()].map(|c| c as f32);
+            if is_patch_unseen(&points, &view_from(eye), level, is_uneven) {
+                found.push((points.map(|p| p.map(f64::from)), eye.map(f64::from)));
+            }
+        }
+        found
+    }
+
+    /// Whether a triangle shows its back, by parameters of its corners in counter-clockwise order; by how much.
+    fn turn(patch: &[[f64; 3]; 16], eye: [f64; 3], corners: [[f64; 2]; 3]) -> f64 {
+        let [p, q, r] = corners.map(|[u, v]| evaluate(patch, u, v).position);
+        let minus = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] { from_fn(|c| a[c] - b[c]) };
+        let (a, b, d) = (minus(q, p), minus(r, p), minus(p, eye));
+        d[0] * (a[1] * b[2] - a[2] * b[1]) + d[1] * (a[2] * b[0] - a[0] * b[2]) + d[2] * (a[0] * b[1] - a[1] * b[0])
+    }
+
+    #[test]
+    fn every_triangle_along_u_and_v_of_a_patch_that_is_turned_away_shows_its_back() {
+        let found = turned_away(&EmitLevel { grain: 1.0, ..EmitLevel::default() }, false);
+        assert!(found.len() > 400, "only {} patches are turned away", found.len());
+        let mut random = Random(11);
+        for (patch, eye) in &found {
+            for _ in 0..200 {
+                let [[u0, u1], [v0, v1]] = from_fn(|_| [random.part(), random.part()]);
+                let corners = if (u1 - u0) * (v1 - v0) > 0.0 {
+                    [[u0, v0], [u1, v0], [u0, v1]]
+                } else {
+                    [[u0, v0], [u0, v1], [u1, v0]]
+                };
+                assert!(turn(patch, *eye, corners) > 0.0, "{patch:?} from {eye:?}: {corners:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_triangle_of_an_uneven_ring_of_a_patch_that_is_turned_away_shows_its_back() {
+        const SKEW: f64 = 1.5;
+        let level = EmitLevel { grain: 1.0, uneven_grain: 1.0, skew: SKEW as f32 };
+        let found = turned_away(&level, true);
+        assert!(found.len() > 100, "only {} patches are turned away", found.len());
+        let mut random = Random(13);
+        let mut tried = 0;
+        for (patch, eye) in &found {
+            for _ in 0..500 {
+                // A base along one row, the tip on another that is near, as in the module's text.
+                let (row, depth) = (0.1 + 0.8 * random.part(), 0.1 * random.part());
+                let tip_row = row + if random.number() > 0.0 { depth } else { -depth };
+                let [from, to, tip]: [f64; 3] = from_fn(|_| random.part());
+                if from >= to || (tip - from).abs() * (tip - to).abs() / (2.0 * depth) > SKEW {
+                    continue;
+                }
+                tried += 1;
+                let is_above = tip_row > row;
+                let ends = if is_above { [from, to] } else { [to, from] };
+                let along_u = [[ends[0], row], [ends[1], row], [tip, tip_row]];
+                assert!(turn(patch, *eye, along_u) > 0.0, "{patch:?} from {eye:?}: {along_u:?}");
+                // Exchanging u and v turns the triangle over.
+                let along_v = [[row, ends[1]], [row, ends[0]], [tip_row, tip]];
+                assert!(turn(patch, *eye, along_v) > 0.0, "{patch:?} from {eye:?}: {along_v:?}");
+            }
+        }
+        assert!(tried > 10_000, "only {tried} triangles");
+    }
+
+    #[test]
+    fn what_cannot_be_computed_is_kept() {
+        let level = EmitLevel { grain: 1.0, ..EmitLevel::default() };
+        let flat: [Vec3; 16] = from_fn(|i| [(i % 4) as f32, (i / 4) as f32, 0.0]);
+        assert!(is_patch_unseen(&flat, &view_from([1.5, 1.5, -9.0]), &level, false));
+        assert!(!is_patch_unseen(&flat, &view_from([1.5, 1.5, 9.0]), &level, false));
+        for scale in [1e-37, 1e-30, 1e30, 1e37] {
+            let [eye] = [[1.5, 1.5, 9.0]].map(|eye| times(eye, scale));
+            assert!(!is_patch_unseen(&flat.map(|p| times(p, scale)), &view_from(eye), &level, false));
+        }
+        for bad in [f32::NAN, f32::INFINITY] {
+            let mut points = flat;
+            points[5][0] = bad;
+            assert!(!is_patch_unseen(&points, &view_from([1.5, 1.5, -9.0]), &level, false));
+        }
+        assert!(!is_patch_unseen(&[[1.0; 3]; 16], &view_from([1.5, 1.5, -9.0]), &level, false));
+        assert!(!are_quads_unseen(&[[1.0; 3]; 4], &[[0, 1, 2, 3]], &view_from([1.5, 1.5, -9.0])));
+    }
+}

@@ -1,0 +1,223 @@
+// Whether nothing can be seen of a patch: it lies outside of the view, or every triangle that it can be tessellated into
+// shows its back. CPU twin and derivation: crates/render/src/visibility.rs. Conservative: in doubt a patch is seen.
+//
+// Every answer of "unseen" comes from comparisons that hold for no NaN: coordinates that overflow keep their patch.
+#ifndef PLANISH_VISIBILITY
+#define PLANISH_VISIBILITY
+#extension GL_EXT_control_flow_attributes : require
+#include "bspline.glsl"
+#include "tables.glsl"
+
+// The smallest normal float.
+const float LEAST_FLOAT = 1.17549435e-38;
+// How far the sums here and those of the draw may be off, over the largest number in them: 2^-19, 32 roundings.
+const float ROUNDING = 1.9073486e-6;
+// Sine of how far a patch must be turned away at least.
+const float TURN_MARGIN = 1e-4;
+// Length of a vector without a component above 1.
+const float CUBE_DIAGONAL = 1.7320509;
+
+// What is seen, in world space.
+struct EmitView {
+    vec3 eye;
+    vec3 clip_x;    // a point at d from the eye has clip coordinates x = dot(clip_x, d),
+    vec3 clip_y;    // y = dot(clip_y, d)
+    vec3 clip_w;    // and w = dot(clip_w, d), its depth
+    float near;     // depth of the near plane
+    float snap;     // how far the rasterizer's grid may move a vertex, over its distance from the eye
+    uint cull_back; // 1 where triangles that show their back are left out
+};
+
+// How patches of a level are tessellated, in their own parameters; crates/render/src/tessellation.rs makes it.
+struct EmitLevel {
+    float grain;        // 1 over the shortest side of a triangle
+    float uneven_grain; // the same for a patch with an edge that has other points than its neighbouring row: at least 1
+                        // over a triangle's area times the longest side
+    float skew;         // how much more such a triangle turns along with the row: x in visibility.rs
+};
+
+precise float precise_dot(vec3 a, vec3 b)
+{
+    precise float result = (a.x * b.x + a.y * b.y) + a.z * b.z;
+    return result;
+}
+
+float largest_component(vec3 a)
+{
+    return max(max(abs(a.x), abs(a.y)), abs(a.z));
+}
+
+precise float sum_of_components(vec3 a)
+{
+    precise float result = (abs(a.x) + abs(a.y)) + abs(a.z);
+    return result;
+}
+
+// Lengths relative to the farthest of a patch's points from the eye, so that no square overflows.
+struct Scale {
+    float factor;       // to relative lengths
+    vec3 eye;           // scaled
+    float near;         // scaled
+    float rounding;     // of the patch's points, scaled
+    float eye_rounding; // of the eye's place, scaled
+};
+
+// `largest_offset` of a component from the eye, `largest` component; points and lengths times `unit`.
+Scale scale_of(EmitView view, float unit, float largest_offset, float largest)
+{
+    precise float factor = 1.0 / max(largest_offset, LEAST_FLOAT);
+    precise vec3 eye = (view.eye * unit) * factor;
+    precise float near = (view.near * unit) * factor;
+    precise float rounding = ROUNDING * (largest * factor);
+    precise float eye_rounding = ROUNDING * largest_component(eye);
+    return Scale(factor, eye, near, rounding, eye_rounding);
+}
+
+// The planes that bound the view and that a point at `d` from the eye lies outside of, one bit each.
+uint outside_planes(vec3 d, EmitView view, Scale scale)
+{
+    precise float x = precise_dot(view.clip_x, d);
+    precise float y = precise_dot(view.clip_y, d);
+    precise float w = precise_dot(view.clip_w, d);
+    precise float noise = (scale.rounding + scale.eye_rounding) + ROUNDING;
+    precise float depth_noise = sum_of_components(view.clip_w) * noise;
+    precise float x_noise = -(sum_of_components(view.clip_x) * noise + depth_noise);
+    precise float y_noise = -(sum_of_components(view.clip_y) * noise + depth_noise);
+    precise float left = w + x;
+    precise float right = w - x;
+    precise float bottom = w + y;
+    precise float top = w - y;
+    precise float beyond = w - scale.near;
+    return (left < x_noise ? 1u : 0u) | (right < x_noise ? 2u : 0u) | (bottom < y_noise ? 4u : 0u)
+        | (top < y_noise ? 8u : 0u) | (beyond < -depth_noise ? 16u : 0u);
+}
+
+// The points of a cubic Bezier curve, times 6, from those of a B-spline.
+void bezier_points(vec3 p0, vec3 p1, vec3 p2, vec3 p3, out precise vec3 b0, out precise vec3 b1, out precise vec3 b2,
+                   out precise vec3 b3)
+{
+    b0 = (p0 + 4.0 * p1) + p2;
+    b1 = 4.0 * p1 + 2.0 * p2;
+    b2 = 2.0 * p1 + 4.0 * p2;
+    b3 = (p1 + 4.0 * p2) + p3;
+}
+
+// Bounds on the tangents along one direction, and on the change of them: lengths.
+struct TangentBounds {
+    float least;
+    float most;
+    float change;
+};
+
+// Of Bezier points whose neighbours in the direction are `step` apart; rows across it begin `row` apart. Makes the 12
+// tangents at the Bezier points unit vectors.
+TangentBounds tangents_of(vec3 b[16], int step, int row, out vec3 tangents[12])
+{
+    float least = 3.402823e38;
+    float most = 0.0;
+    float change = 0.0;
+    [[unroll]] for (int i = 0; i < 12; ++i) {
+        int at = i / 3 * row + i % 3 * step;
+        precise vec3 tangent = b[at + step] - b[at];
+        precise float square = precise_dot(tangent, tangent);
+        precise vec3 unit = tangent / sqrt(max(square, LEAST_FLOAT));
+        tangents[i] = unit;
+        least = min(least, square);
+        most = max(most, square);
+    }
+    [[unroll]] for (int i = 0; i < 8; ++i) {
+        int at = i / 2 * row + i % 2 * step;
+        precise vec3 bend = (b[at + 2 * step] - b[at + step]) - (b[at + step] - b[at]);
+        change = max(change, precise_dot(bend, bend));
+    }
+    precise float shortest = 3.0 * sqrt(least);
+    precise float longest = 3.0 * sqrt(most);
+    precise float second = 6.0 * sqrt(change);
+    return TangentBounds(shortest, longest, second);
+}
+
+// How much of their product the triangles of a tessellation may lose against the tangents: x in visibility.rs. `error` is
+// how far a corner may be off.
+precise float slack_of(TangentBounds u, TangentBounds v, EmitLevel level, bool is_uneven, float error)
+{
+    precise float grain = is_uneven ? level.uneven_grain : level.grain;
+    precise float sides = (u.least + v.least) + (is_uneven ? max(u.most, v.most) : 0.0);
+    precise float noise = (((2.0 * error) * grain) * sides) / (u.least * v.least);
+    precise float turn = (is_uneven ? level.skew : 0.0) * max(u.change / v.least, v.change / u.least);
+    precise float slack = (noise + noise * noise) + (turn + TURN_MARGIN);
+    return slack;
+}
+
+// Whether nothing of a bicubic patch can be seen, by its B-spline control points.
+bool is_patch_unseen(vec3 p[16], EmitView view, EmitLevel level, bool is_uneven)
+{
+    vec3 row[16];
+    vec3 b[16]; // Bezier points times 36
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        bezier_points(p[4 * i], p[4 * i + 1], p[4 * i + 2], p[4 * i + 3], row[4 * i], row[4 * i + 1], row[4 * i + 2],
+                      row[4 * i + 3]);
+    }
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        bezier_points(row[i], row[4 + i], row[8 + i], row[12 + i], b[i], b[4 + i], b[8 + i], b[12 + i]);
+    }
+    float largest_offset = 0.0;
+    float largest = 0.0;
+    [[unroll]] for (int i = 0; i < 16; ++i) {
+        precise vec3 offset = b[i] - 36.0 * view.eye;
+        largest_offset = max(largest_offset, largest_component(offset));
+        largest = max(largest, largest_component(b[i]));
+    }
+    Scale scale = scale_of(view, 36.0, largest_offset, largest);
+    [[unroll]] for (int i = 0; i < 16; ++i) {
+        precise vec3 scaled_point = b[i] * scale.factor;
+        b[i] = scaled_point;
+    }
+    precise vec3 middle = 0.25 * ((b[0] + b[3]) + (b[12] + b[15])) - scale.eye;
+    uint planes = 31u;
+    float square_radius = 0.0;
+    [[unroll]] for (int i = 0; i < 16; ++i) {
+        precise vec3 d = b[i] - scale.eye;
+        precise vec3 around = d - middle;
+        planes &= outside_planes(d, view, scale);
+        square_radius = max(square_radius, precise_dot(around, around));
+    }
+    vec3 along_u[12];
+    vec3 along_v[12];
+    TangentBounds u = tangents_of(b, 1, 4, along_u);
+    TangentBounds v = tangents_of(b, 4, 1, along_v);
+    [[unroll]] for (int i = 0; i < 12; ++i) {
+        along_v[i] = precise_cross(along_v[i], middle);
+    }
+    float product = 3.402823e38;
+    [[unroll]] for (int i = 0; i < 12; ++i) {
+        [[unroll]] for (int j = 0; j < 12; ++j) {
+            product = min(product, precise_dot(along_u[i], along_v[j]));
+        }
+    }
+    precise float radius = sqrt(square_radius);
+    precise float farthest = sqrt(precise_dot(middle, middle)) + radius;
+    precise float error = scale.rounding + farthest * view.snap;
+    precise float least = (radius + farthest * slack_of(u, v, level, is_uneven, error)) + 2.0 * scale.eye_rounding;
+    return planes != 0u || (view.cull_back != 0u && product > least);
+}
+
+// Whether a triangle shows its back, by offsets of its corners from the eye.
+bool is_triangle_turned(vec3 d0, vec3 d1, vec3 d2, float error, float eye_rounding)
+{
+    precise vec3 a = d1 - d0;
+    precise vec3 b = d2 - d0;
+    precise float a_length = sqrt(precise_dot(a, a));
+    precise float b_length = sqrt(precise_dot(b, b));
+    precise float area = a_length * b_length;
+    precise float noise = TURN_MARGIN * area + (2.0 * error) * ((a_length + b_length) + 2.0 * error);
+    precise float least = sqrt(precise_dot(d0, d0)) * noise + (2.0 * eye_rounding) * area;
+    return precise_dot(d0, precise_cross(a, b)) > least;
+}
+
+// Whether all triangles of a flat quad show their back, split along either diagonal.
+bool is_quad_turned(vec3 d0, vec3 d1, vec3 d2, vec3 d3, float error, float eye_rounding)
+{
+    return is_triangle_turned(d0, d1, d2, error, eye_rounding) && is_triangle_turned(d0, d2, d3, error, eye_rounding)
+        && is_triangle_turned(d0, d1, d3, error, eye_rounding) && is_triangle_turned(d1, d2, d3, error, eye_rounding);
+}
+#endif
