@@ -63,7 +63,9 @@ bool is_unseen(uint place)
     }
     reflect_points(points, patch_boundary(info));
     bool is_uneven = (patch_transition(info) | patch_leaf(info)) != 0u;
-    return is_patch_unseen(points, push.view, push.levels.v[patch_level(info)], is_uneven);
+    // The tangents of a patch with a semi-sharp crease are not those of its control points: it is always drawn.
+    bool is_creased = push.patches.v[place].sharpness != 0.0;
+    return !is_creased && is_patch_unseen(points, push.view, push.levels.v[patch_level(info)], is_uneven);
 }
 #else
 #if defined(MIDPOINTS)

@@ -7,7 +7,7 @@ use crate::emit::Emit;
 use crate::error::Error;
 use crate::frame::FrameConstants;
 use crate::lists::PatchKind;
-use crate::options::View;
+use crate::options::{SurfaceMethod, View};
 use crate::pipelines::{Output, PipelineOptions, pipelines};
 use crate::surface::{Surface, SurfaceDesc};
 use crate::targets::Targets;
@@ -56,9 +56,9 @@ impl DrawPasses {
             creases: surface.has_creased_patches(),
         };
         let wire = PipelineOptions { wire: true, ..fill };
-        let has_emit = options.emit && options.method == SurfaceMethod::Fas;
+        let has_emit = options.emit && surface.method == SurfaceMethod::Fas;
         Ok(Self {
-            emit: has_emit.then(|| Emit::new(device, options)).transpose()?,
+            emit: has_emit.then(|| Emit::new(device, surface, options)).transpose()?,
             fill: pipelines(device, &fill)?,
             wire: if is_wire { pipelines(device, &wire)? } else { Vec::new() },
         })

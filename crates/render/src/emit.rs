@@ -19,7 +19,7 @@ use crate::error::Error;
 use crate::lists::{Batches, Lists, MAX_BATCH, PatchKind};
 use crate::options::Spacing;
 use crate::program::specialized_compute_pipeline;
-use crate::surface::Surface;
+use crate::surface::{Surface, SurfaceDesc};
 use crate::tessellation::emit_level;
 use crate::upload::address;
 use crate::visibility::{are_quads_unseen, is_patch_unseen};
@@ -42,13 +42,13 @@ pub(crate) struct Emit {
 }
 
 impl Emit {
-    pub(crate) fn new(device: &Device, options: &DrawOptions) -> Result<Self, Error> {
+    pub(crate) fn new(device: &Device, surface: &SurfaceDesc, options: &DrawOptions) -> Result<Self, Error> {
         let local_size = if device.is_software() { SOFTWARE_LOCAL_SIZE } else { LOCAL_SIZE[0] };
         let spec = [
             SpecConstant { id: SPEC_MAX_BATCH, bits: MAX_BATCH },
             SpecConstant { id: SPEC_LOCAL_SIZE_X, bits: local_size },
         ];
-        let filling = match options.spacing {
+        let filling = match surface.spacing {
             Spacing::FractionalEven => &emit_midpoints_comp::PROGRAM,
             Spacing::Equal | Spacing::FractionalOdd => &emit_corners_comp::PROGRAM,
         };
@@ -190,7 +190,10 @@ fn is_regular_unseen(patch: &RegularPatch, levels: &[EmitLevel], points: &[[f32;
     let mut control = patch.points.map(|point| points[point as usize]);
     reflect_points(&mut control, info.boundary);
     let is_uneven = info.transition | info.leaf != 0;
-    (is_patch_unseen(&control, view, &levels[usize::from(info.level)], is_uneven), info.level)
+    // The tangents of a patch with a semi-sharp crease are not those of its control points: it is always drawn.
+    let is_unseen =
+        patch.sharpness == 0.0 && is_patch_unseen(&control, view, &levels[usize::from(info.level)], is_uneven);
+    (is_unseen, info.level)
 }
 
 /// `reflect_points` of `glsl/shared/control_points.glsl`.

@@ -8,7 +8,7 @@ use planish_render::emit::{Emitted, emit, emit_view};
 use planish_render::tessellation::{filling_triangle_count, patch_triangle_count};
 use planish_render::{
     CapturedVertex, DrawOptions, DrawPasses, DumpPasses, FrameCamera, FrameConstants, PatchKind, PointStages, Spacing,
-    Surface, SurfaceDesc, SurfaceMethod, Targets, View, density, limit, preprocess, subdivide,
+    Surface, SurfaceDesc, Targets, View, density, limit, preprocess, subdivide,
 };
 use planish_scene::{Camera, LoadOptions};
 use planish_subdiv::ControlMesh;
@@ -74,7 +74,7 @@ impl Case {
         let scene = planish_scene::load(path, &LoadOptions::default()).expect("a scene");
         let mesh = scene.meshes[0].control_mesh.clone();
         let level = density::isolation_level(factor, 10);
-        let desc = SurfaceDesc { method: SurfaceMethod::Fas, spacing, level };
+        let desc = SurfaceDesc { spacing, level, ..SurfaceDesc::default() };
         let made = preprocess(&mesh, &desc).expect("tables");
         let factors = density::level_factors(factor, spacing, &made.tables).expect("factors");
         let surface = Surface::new(device, &mesh, desc, made, &factors).expect("upload");
@@ -149,9 +149,10 @@ impl Passes {
         let spacings = [Spacing::Equal, Spacing::FractionalOdd, Spacing::FractionalEven];
         let all = spacings.into_iter().flat_map(|spacing| {
             [(false, false), (false, true), (true, false), (true, true)].map(|(cull_back, emit)| {
-                let (method, view) = (SurfaceMethod::Fas, View::Shaded);
-                let options = DrawOptions { method, spacing, view, layers: true, cull_back, emit };
-                (spacing, cull_back, emit, DrawPasses::new(device, &options).expect("pipelines"))
+                let view = View::Shaded;
+                let desc = SurfaceDesc { spacing, ..SurfaceDesc::default() };
+                let options = DrawOptions { view, layers: true, cull_back, emit };
+                (spacing, cull_back, emit, DrawPasses::new(device, &desc, &options).expect("pipelines"))
             })
         });
         Self(all.collect())
@@ -256,7 +257,7 @@ fn triangles(device: &Device, case: &Case) -> Vec<Vec<CapturedVertex>> {
     case.stages.record(&mut encoder, surface);
     device.submit_and_wait(&encoder.finish().expect("recording")).expect("submission");
     let mut vertices = Vec::new();
-    let dump = DumpPasses::new(device, desc.method, desc.spacing).expect("pipelines");
+    let dump = DumpPasses::new(device, &desc).expect("pipelines");
     dump.capture(device, surface, &constants, &case.factors, |part| {
         vertices.extend_from_slice(part);
         Ok::<_, planish_render::Error>(())
