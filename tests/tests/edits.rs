@@ -12,7 +12,7 @@ use planish_tests::program::Planish;
 use planish_tests::repository::{scenes, stem};
 
 /// Whether a scene is about edits.
-fn is_edited(path: &PathBuf) -> bool {
+fn is_edited(path: &Path) -> bool {
     stem(path).starts_with("edit_")
 }
 
@@ -54,7 +54,7 @@ fn check(mesh: &Path, flags: &str, normal_degrees: f64) -> Result<(), String> {
 
 #[test]
 fn dumps_of_edited_scenes_are_the_limit_surface() {
-    let meshes: Vec<PathBuf> = scenes().into_iter().filter(is_edited).collect();
+    let meshes: Vec<PathBuf> = scenes().into_iter().filter(|mesh| is_edited(mesh)).collect();
     assert!(!meshes.is_empty(), "there are scenes with edits");
     let factors = ["1", "4", "7.3", "16"];
     let cases: Vec<_> = meshes.iter().flat_map(|mesh| factors.map(|tess| (mesh.clone(), tess))).collect();
@@ -63,6 +63,6 @@ fn dumps_of_edited_scenes_are_the_limit_surface() {
 
 #[test]
 fn uniform_refinement_gives_the_same_surface() {
-    let meshes: Vec<PathBuf> = scenes().into_iter().filter(is_edited).collect();
+    let meshes: Vec<PathBuf> = scenes().into_iter().filter(|mesh| is_edited(mesh)).collect();
     check_all(&meshes, |mesh| check(mesh, "--tess 16 --method uniform --spacing equal", 0.05));
 }

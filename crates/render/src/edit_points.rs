@@ -30,7 +30,6 @@ impl EditPoints {
             offsets: address(&buffers.edit_offsets),
             first_edit: edits.start,
             edit_count: edits.len() as u32,
-            ..Push::default()
         };
         encoder.compute(&self.0, &push, push.edit_count);
     }

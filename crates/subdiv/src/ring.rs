@@ -153,10 +153,10 @@ impl Ring {
         for i in 0..self.face_count {
             [0, edge(i), edge(i + 1), face(i)].into_iter().for_each(|place| add(place, 0.25, after[face(i)]));
         }
-        for place in ring_end..after.len() {
-            // Beyond the sector only ends of creases matter.
-            add(0, 0.5, after[place]);
-            add(place, 0.5, after[place]);
+        // Beyond the sector only ends of creases matter.
+        for (place, &of) in after.iter().enumerate().skip(ring_end) {
+            add(0, 0.5, of);
+            add(place, 0.5, of);
         }
         before
     }

@@ -69,7 +69,7 @@ impl VertexTag {
     /// The tag with what its edges' and its own sharpness adds.
     pub(crate) fn with_sharpness(self, semi_sharp: bool, infinite_crease: bool) -> Self {
         let kept = self.0 & !(Self::SEMI_SHARP | Self::INFINITE_CREASE);
-        Self(kept | u8::from(semi_sharp) * Self::SEMI_SHARP | u8::from(infinite_crease) * Self::INFINITE_CREASE)
+        Self(kept | (u8::from(semi_sharp) * Self::SEMI_SHARP) | (u8::from(infinite_crease) * Self::INFINITE_CREASE))
     }
 
     fn with_irregular_sectors(self) -> Self {

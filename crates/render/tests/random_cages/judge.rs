@@ -98,7 +98,7 @@ impl Judge {
         };
         let distance = length(subtract(position, expected.position)) / self.largest_coordinate;
         // Also where it is NaN.
-        if !(distance <= POSITION_TOLERANCE) {
+        if distance.is_nan() || distance > POSITION_TOLERANCE {
             return wrong(format!("position {position:?} is off {:?} by {distance:e}", expected.position));
         }
         let domain = &self.domains[ptex_face as usize];
