@@ -4,6 +4,7 @@
 // Every answer of "unseen" comes from comparisons that hold for no NaN: coordinates that overflow keep their patch.
 #ifndef PLANISH_VISIBILITY
 #define PLANISH_VISIBILITY
+// Loops are unrolled: with constant indices all arrays stay in registers.
 #extension GL_EXT_control_flow_attributes : require
 #include "bspline.glsl"
 #include "tables.glsl"

@@ -102,7 +102,7 @@ pub const MAX_BATCH: u32 = 256;
 
 /// Vertices that a draw should generate on a software driver: on Mesa 22.3's, larger batches cost more by their square,
 /// smaller ones by their number (`planish bench --tess`).
-const BATCH_VERTICES: u32 = 1024;
+const BATCH_VERTICES: u32 = 512;
 
 /// What the shape of draws depends on.
 #[derive(Clone, Copy, Debug)]

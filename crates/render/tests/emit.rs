@@ -187,7 +187,7 @@ fn the_kernel_equals_its_twin_bit_for_bit() {
         let case = Case::new(&device, &path, way);
         for cull_back in [false, true] {
             let passes = passes.get(way.0, cull_back, true);
-            for eye in EYES {
+            for &eye in EYES.iter().step_by(2) {
                 let camera = case.camera(eye, SIZE);
                 case.draw(&device, passes, &targets, &camera);
                 let found = case.surface.download_emitted(&device).expect("lists");
