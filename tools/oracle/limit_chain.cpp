@@ -6,13 +6,17 @@
 
 #include <opensubdiv/far/primvarRefiner.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 using namespace OpenSubdiv;
 using Index = Cage::Index;
 
 // Halvings after which a point counts as the corner that it approaches; a double has 53 bits.
 constexpr int max_depth = 100;
+// Bfr is only asked for irregular faces from here on: where faces have several vertices in common, it may crash.
+constexpr int min_sharp_depth = 3;
 
 ChainNode::ChainNode(Cage&& ring, Vec3 origin, int depth) : ring_(std::move(ring)), origin_(origin), depth_(depth) {
     size_ = ring_.face_sizes[0];
@@ -119,6 +123,54 @@ CornerKind ChainNode::corner_kind(int corner) const {
     return infinite_count == 0 ? CornerKind::smooth : CornerKind::odd;
 }
 
+// The faces of the sector at a corner of face 0, between infinitely sharp edges or all around.
+int ChainNode::sector_size(Index corner) const {
+    const Far::TopologyLevel& level = refiner_->GetLevel(0);
+    Far::ConstIndexArray edges = level.GetVertexEdges(corner);
+    std::set<Index> sector{0};
+    for (bool grown = true; grown;) {
+        grown = false;
+        for (Index edge : edges) {
+            Far::ConstIndexArray beside = level.GetEdgeFaces(edge);
+            if (level.GetEdgeSharpness(edge) >= infinite_sharpness || beside.size() != 2 ||
+                sector.count(beside[0]) == sector.count(beside[1]))
+                continue;
+            sector.insert(beside.begin(), beside.end());
+            grown = true;
+        }
+    }
+    return (int)sector.size();
+}
+
+bool ChainNode::may_be_regular_at(Index corner) const {
+    const Far::TopologyLevel& level = refiner_->GetLevel(0);
+    if (level.IsVertexNonManifold(corner) || has_semi_sharp_edge(level, corner))
+        return false;
+    for (Index face : level.GetVertexFaces(corner))
+        if (level.GetFaceVertices(face).size() != 4)
+            return false;
+    int infinite_count = 0;
+    for (Index edge : level.GetVertexEdges(corner))
+        infinite_count += level.GetEdgeSharpness(edge) >= infinite_sharpness;
+    const bool is_corner = level.GetVertexSharpness(corner) > 0 || infinite_count > 2;
+    return sector_size(corner) == (is_corner ? 1 : infinite_count == 2 ? 2 : 4);
+}
+
+bool ChainNode::may_be_regular() const {
+    Far::ConstIndexArray corners = refiner_->GetLevel(0).GetFaceVertices(0);
+    return ring_.is_loop() || std::all_of(corners.begin(), corners.end(), [&](Index corner) {
+               return may_be_regular_at(corner);
+           });
+}
+
+bool ChainNode::is_isolated(int corner) const {
+    Far::ConstIndexArray corners = refiner_->GetLevel(0).GetFaceVertices(0);
+    for (int i = 0; i < corners.size(); ++i)
+        if (i != corner && !ring_.is_loop() && !may_be_regular_at(corners[i]))
+            return false;
+    return true;
+}
+
 // The corner that (u, v) is exactly on, or -1.
 static int corner_at(double u, double v, bool is_triangle) {
     if (u == 0 && v == 0)
@@ -172,23 +224,39 @@ Sample ChainNode::evaluate_bfr(double u, double v) {
     return sample;
 }
 
+Sample ChainNode::evaluate_flat(double u, double v) const {
+    const Index* corners = ring_.face_points.data();
+    const double weights[4] = {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
+    const double weights_u[4] = {v - 1, 1 - v, v, -v}, weights_v[4] = {u - 1, -u, u, 1 - u};
+    Sample sample;
+    sample.valid = true;
+    sample.position = origin_;
+    sample.scale = std::ldexp(1.0, -depth_);
+    for (int i = 0; i < 4; ++i) {
+        sample.position.AddWithWeight(ring_.points[corners[i]], weights[i]);
+        sample.tangent_u.AddWithWeight(ring_.points[corners[i]], weights_u[i]);
+        sample.tangent_v.AddWithWeight(ring_.points[corners[i]], weights_v[i]);
+    }
+    return sample;
+}
+
 Sample ChainNode::evaluate(int sub, double u, double v) {
     if (!is_regular_size())
         return corner_quad(sub).evaluate(0, u, v);
-    if (bfr().is_regular() || ring_.scheme == Sdc::SCHEME_BILINEAR)
+    if (ring_.scheme == Sdc::SCHEME_BILINEAR || (may_be_regular() && bfr().is_regular()))
         return evaluate_bfr(u, v);
 
     const int corner = corner_at(u, v, ring_.is_loop());
     const CornerKind kind = corner < 0 ? CornerKind::odd : corner_kind(corner);
     if (kind == CornerKind::smooth)
         return evaluate_smooth_corner(corner);
-    if (kind == CornerKind::sharp) {
+    if (kind == CornerKind::sharp && depth_ >= min_sharp_depth && is_isolated(corner)) {
         Sample sample = evaluate_bfr(u, v);
         sample.kind = PointKind::sharp_irregular;
         return sample;
     }
     if (depth_ >= max_depth) {
-        Sample sample = evaluate_bfr(u, v);
+        Sample sample = ring_.is_loop() ? evaluate_bfr(u, v) : evaluate_flat(u, v);
         sample.kind = corner < 0 ? PointKind::ordinary : PointKind::odd;
         return sample;
     }

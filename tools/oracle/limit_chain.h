@@ -30,6 +30,13 @@ public:
 
     bool is_regular_size() const { return size_ == ring_.regular_face_size(); }
     CornerKind corner_kind(int corner) const;
+    // False where the face is certainly no regular patch: Bfr, which knows for sure, may crash there, and does not see
+    // that semi-sharp edges of any fan at a non-manifold corner change its rule.
+    bool may_be_regular() const;
+    bool may_be_regular_at(Cage::Index corner) const;
+    // Whether the face would be regular but for a corner.
+    bool is_isolated(int corner) const;
+    int sector_size(Cage::Index corner) const;
     // The quad around a corner of an irregular face.
     ChainNode& corner_quad(int corner);
 
@@ -46,6 +53,8 @@ private:
 
     const BfrFace& bfr();
     Sample evaluate_bfr(double u, double v);
+    // Of the quad's four corners, for a face so small that it is flat; Bfr may crash there.
+    Sample evaluate_flat(double u, double v) const;
     Sample evaluate_smooth_corner(int corner);
     Sample evaluate_quad_child(double u, double v);
     Sample evaluate_triangle_child(double u, double v);

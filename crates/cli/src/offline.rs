@@ -144,12 +144,8 @@ impl Session {
     /// Makes images and the passes that draw into them, and records a whole frame.
     pub fn images(&mut self, view: View, layers: bool, culling: Culling) -> Result<Images> {
         let desc = self.surface.desc();
-        let options = DrawOptions {
-            view,
-            layers,
-            cull_back: culling == Culling::UnseenAndBacks,
-            emit: culling != Culling::Off,
-        };
+        let options =
+            DrawOptions { view, layers, cull_back: culling == Culling::UnseenAndBacks, emit: culling != Culling::Off };
         let start = Instant::now();
         let passes = DrawPasses::new(&self.device, desc, &options)?;
         self.pipelines_ms += milliseconds(start);

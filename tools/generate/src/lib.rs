@@ -3,22 +3,29 @@
 //! | module | idea |
 //! |---|---|
 //! | `cage` | a mesh under construction, and its OBJ text |
+//! | `tags` | creases, sharp vertices, holes and options |
+//! | `edits` | hierarchical edits |
 //! | `random` | a small random number generator and smooth noise |
 //! | `sheets` | grids, strips and other open sheets |
 //! | `sectors` | discs and fans around one vertex, rings around one n-gon |
 //! | `solids` | closed meshes: cube, torus, cube sphere and others |
 //! | `lattice` | the surface of a set of cells of a bent lattice |
 //! | `rotate` | edge rotations, which make extraordinary vertices, and relaxation |
+//! | `random_cage` | cages that a seed makes, for tests |
 //! | `large` | meshes of any number of faces |
 //! | `scenes` | what stands in `scenes/` |
 //! | `hero` | the scene that shows it all |
 pub mod cage;
+pub mod creased;
+pub mod edits;
 pub mod hero;
 pub mod large;
 pub mod lattice;
 pub mod random;
+pub mod random_cage;
 pub mod rotate;
 pub mod scenes;
 pub mod sectors;
 pub mod sheets;
 pub mod solids;
+pub mod tags;

@@ -5,6 +5,8 @@ use std::process::ExitCode;
 use anyhow::{Context as _, Result, ensure};
 use clap::{Parser, Subcommand};
 use planish_generate::cage::Cage;
+use planish_generate::creased::add_creases;
+use planish_generate::random_cage::{Features, Recipe};
 use planish_generate::{large, scenes, sheets, solids};
 
 /// Most faces of a generated mesh.
@@ -42,6 +44,9 @@ enum Command {
         /// About which share of the faces has an extraordinary vertex
         #[arg(long, default_value_t = 0.15)]
         irregular: f64,
+        /// About which share of the edges is creased
+        #[arg(long, default_value_t = 0.0)]
+        creased: f64,
         /// OBJ file to write
         #[arg(short, long)]
         out: PathBuf,
@@ -54,6 +59,21 @@ enum Command {
         /// Quads around the tube
         #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(3..=7000))]
         v: u32,
+        /// OBJ file to write
+        #[arg(short, long)]
+        out: PathBuf,
+    },
+    /// A random cage with random tags, for tests
+    Random {
+        /// Where the random numbers begin
+        #[arg(long)]
+        seed: u64,
+        /// What it may have, separated by commas: `all`, or any of those that `--help` lists
+        #[arg(long, default_value = "all", value_parser = features, long_help = features_help())]
+        features: Features,
+        /// Operations tried on the base shape
+        #[arg(long, default_value_t = 12)]
+        operations: u32,
         /// OBJ file to write
         #[arg(short, long)]
         out: PathBuf,
@@ -91,15 +111,41 @@ fn run() -> Result<()> {
             Ok(())
         }
         Command::Terrain { faces, out } => write_cage(&out, "Hills on a grid.", &large::terrain(faces)),
-        Command::Blob { faces, irregular, out } => {
+        Command::Blob { faces, irregular, creased, out } => {
             ensure!((0.0..=1.0).contains(&irregular), "--irregular: found {irregular}, expected 0 to 1");
-            write_cage(&out, "A closed blob with extraordinary vertices all over.", &large::blob(faces, irregular))
+            ensure!((0.0..=1.0).contains(&creased), "--creased: found {creased}, expected 0 to 1");
+            let mut cage = large::blob(faces, irregular);
+            add_creases(&mut cage, creased);
+            write_cage(&out, "A closed blob with extraordinary vertices all over.", &cage)
         }
         Command::Torus { u, v, out } => write_cage(&out, "A torus of regular quads.", &solids::torus(u, v)),
+        Command::Random { seed, features, operations, out } => {
+            let recipe = Recipe { seed, features, operation_count: operations };
+            write_cage(&out, &format!("A random cage: {recipe:?}."), &recipe.cage())
+        }
         Command::Grid { columns, rows, out } => {
             write_cage(&out, "A waved grid of quads.", &sheets::waved_grid(columns, rows))
         }
     }
+}
+
+/// Features by their names, or by their bits.
+fn features(text: &str) -> Result<Features> {
+    if let Ok(bits) = text.parse() {
+        return Ok(Features(bits));
+    }
+    let mut features = Features::PLAIN;
+    for name in text.split(',').filter(|name| !name.is_empty()) {
+        let known = Features::NAMES.iter().find(|(known, _)| *known == name).map(|&(_, feature)| feature);
+        let feature = if name == "all" { Some(Features::ALL) } else { known };
+        features = features.with(feature.with_context(|| format!("unknown feature {name}"))?);
+    }
+    Ok(features)
+}
+
+fn features_help() -> String {
+    let names: Vec<&str> = Features::NAMES.iter().map(|&(name, _)| name).collect();
+    format!("What it may have, separated by commas: all, {}; or the sum of their bits in this order", names.join(", "))
 }
 
 fn write_cage(path: &Path, comment: &str, cage: &Cage) -> Result<()> {
