@@ -12,7 +12,7 @@ use planish_tests::ply::Dump;
 use planish_tests::program::Planish;
 
 /// What the cages may have.
-const FEATURES: Features = Features::ALL.without(Features::SLIT_FANS);
+const FEATURES: Features = Features::ALL;
 /// Seeds of cages that may have any of them.
 const SEEDS: std::ops::Range<u64> = 1000..1040;
 /// Seeds of manifold cages, whose tags reach farther.

@@ -119,23 +119,24 @@ fn creased_mask(level: &Level, corner: u32) -> (Vec<u32>, Vec<[f64; 3]>) {
     let (steps, last) = ring.decay(level, sharpness);
     let face_count = ring.face_count as u32;
     let mut weights = Vec::with_capacity(ring.points.len());
-    let is_closed = ring.is_closed;
-    match last.before.0 {
-        VertexRule::Smooth => mask_weights(LimitRule::Smooth(face_count), |weight| weights.push(weight)),
-        VertexRule::Dart => weights = dart_mask(&ring),
-        VertexRule::Crease if !is_closed => {
-            mask_weights(LimitRule::Boundary(face_count), |weight| weights.push(weight));
-        }
-        VertexRule::Corner if !is_closed => mask_weights(LimitRule::Corner(face_count), |weight| weights.push(weight)),
-        // A whole fan that touches a crease or a corner at one vertex.
-        VertexRule::Crease | VertexRule::Corner => {
-            mask_weights(LimitRule::Cone(face_count), |weight| weights.push(weight));
-        }
+    let (rule, ends) = last.before;
+    let limit_rule = match rule {
+        VertexRule::Smooth | VertexRule::Dart => LimitRule::Smooth(face_count),
+        VertexRule::Crease | VertexRule::Corner if ring.is_closed => LimitRule::Cone(face_count),
+        VertexRule::Crease => LimitRule::Boundary(face_count),
+        VertexRule::Corner => LimitRule::Corner(face_count),
+    };
+    if rule == VertexRule::Dart {
+        weights = dart_mask(&ring);
+    } else {
+        mask_weights(limit_rule, |weight| weights.push(weight));
     }
     weights.resize(ring.points.len(), [0.0; 3]);
-    if last.before.0 == VertexRule::Crease && is_closed {
+    if rule == VertexRule::Crease {
+        // The crease need not run along the sector: a whole fan, or one that begins and ends at the same edge.
+        weights.iter_mut().for_each(|weight| weight[0] = 0.0);
         weights[0][0] = 1.0 - 2.0 * rules::CREASE_LIMIT_END;
-        last.before.1.into_iter().for_each(|edge| weights[ring.edge_places[edge]][0] = rules::CREASE_LIMIT_END);
+        ends.into_iter().for_each(|edge| weights[ring.edge_places[edge]][0] += rules::CREASE_LIMIT_END);
     }
     for step in steps.iter().rev() {
         weights = ring.carry_back(step, &weights);

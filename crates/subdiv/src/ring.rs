@@ -137,6 +137,10 @@ impl Ring {
         for (&place, &crease) in self.edge_places.iter().zip(&step.creases).filter(|(place, _)| **place < after.len()) {
             crease_of[place] = crease;
         }
+        if !self.is_closed {
+            // Infinitely sharp; both may be the same edge, of which only one has a place.
+            (crease_of[edge(0)], crease_of[edge(self.face_count)]) = (1.0, 1.0);
+        }
         for i in 0..edge_count {
             let (of, crease) = (after[edge(i)], crease_of[edge(i)]);
             let ends = 0.5 * crease + rules::EDGE_END * (1.0 - crease);

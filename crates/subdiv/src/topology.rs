@@ -396,7 +396,10 @@ impl Level {
             // Around a closed fan the last part ends where the first begins.
             let wrapped = cuts.first().map(|first| first + spokes.len());
             let ends = cuts.iter().copied().skip(1).chain(wrapped);
-            !cuts.is_empty() && cuts.iter().zip(ends).all(|(begin, end)| end - begin == regular_face_count)
+            // A single part may lie between both sides of one edge.
+            let last = spokes.last().map_or(start, |&spoke| self.previous(spoke));
+            let is_slit = cuts.len() == 1 && (!self.is_unpaired(start) || self.sharing(&start).contains(&last));
+            !cuts.is_empty() && !is_slit && cuts.iter().zip(ends).all(|(begin, end)| end - begin == regular_face_count)
         })
     }
 

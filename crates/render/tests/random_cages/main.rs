@@ -19,7 +19,7 @@ use proptest::test_runner::RngSeed;
 use crate::judge::{CORNERS, Judge};
 
 /// What the cages may have.
-const FEATURES: Features = Features::ALL.without(Features::SLIT_FANS);
+const FEATURES: Features = Features::ALL;
 /// Cages of a test, unless more are asked for.
 const CASES: u32 = 1000;
 /// Where regular patches are evaluated, in their own domain.
