@@ -3,6 +3,7 @@
 //! Layers, each using only those before it: [`mesh`] (the cage), [`rules`] (masks, no topology), [`topology`] (one level
 //! as half-edges), [`refine`] (feature-adaptive levels), then [`tables`] (what the GPU reads) and [`eval`] (f64 evaluator).
 
+mod base_level;
 pub mod edits;
 pub mod error;
 pub mod eval;
@@ -16,6 +17,7 @@ mod sharpness;
 pub mod stencil;
 pub mod tables;
 pub mod topology;
+pub mod vertex_tag;
 
 pub use error::Error;
 pub use mesh::ControlMesh;

@@ -7,127 +7,12 @@
 
 use std::collections::HashMap;
 
-use crate::error::Error;
-use crate::mesh::{BoundaryInterpolation, ControlMesh, Creasing, INFINITE_SHARPNESS, MeshOptions};
+use crate::mesh::{Creasing, INFINITE_SHARPNESS, MeshOptions};
 use crate::rules::is_semi_sharp;
+pub use crate::vertex_tag::VertexTag;
 
 /// "There is none", for any index.
 pub const NONE: u32 = u32::MAX;
-
-/// What decides the rules at a vertex.
-///
-/// | bit | meaning |
-/// |---|---|
-/// | 0 | boundary: the faces form one fan between two boundary edges |
-/// | 1 | corner: infinitely sharp, interpolated |
-/// | 2 | not a regular arrangement of faces |
-/// | 3 | touches a face that is no quad (level 0 only) |
-/// | 4 | semi-sharp itself, or an end of a semi-sharp edge: its rule still changes from level to level |
-/// | 5 | an end of an infinitely sharp edge between two faces |
-/// | 6 | not manifold: more than one fan of faces, or an edge of more than two faces |
-/// | 7 | infinitely sharp edges do not cut the faces as a regular boundary or corner has them |
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct VertexTag(u8);
-
-impl VertexTag {
-    const BOUNDARY: u8 = 1;
-    const CORNER: u8 = 2;
-    const EXTRAORDINARY: u8 = 4;
-    const BESIDE_NON_QUAD: u8 = 8;
-    const SEMI_SHARP: u8 = 16;
-    const INFINITE_CREASE: u8 = 32;
-    const NON_MANIFOLD: u8 = 64;
-    const IRREGULAR_SECTORS: u8 = 128;
-
-    /// The tag of a manifold vertex with this many faces.
-    pub fn new(face_count: u32, boundary: bool, corner: bool, beside_non_quad: bool) -> Self {
-        let regular = match (boundary, corner) {
-            (false, false) => face_count == 4,
-            (false, true) => false,
-            (true, false) => face_count == 2,
-            (true, true) => face_count == 1,
-        };
-        Self(
-            (u8::from(boundary) * Self::BOUNDARY)
-                | (u8::from(corner) * Self::CORNER)
-                | (u8::from(!regular) * Self::EXTRAORDINARY)
-                | (u8::from(beside_non_quad) * Self::BESIDE_NON_QUAD),
-        )
-    }
-
-    /// The tag of a vertex that is not manifold.
-    fn non_manifold(corner: bool, beside_non_quad: bool) -> Self {
-        let plain = Self::new(0, false, corner, beside_non_quad);
-        Self(plain.0 | Self::NON_MANIFOLD)
-    }
-
-    /// The tag of the middle of an edge that is not manifold: a crease with two faces on every side of it.
-    pub(crate) fn middle_of_non_manifold() -> Self {
-        Self::non_manifold(false, false)
-    }
-
-    /// The tag with what its edges' and its own sharpness adds.
-    pub(crate) fn with_sharpness(self, semi_sharp: bool, infinite_crease: bool) -> Self {
-        let kept = self.0 & !(Self::SEMI_SHARP | Self::INFINITE_CREASE);
-        Self(kept | (u8::from(semi_sharp) * Self::SEMI_SHARP) | (u8::from(infinite_crease) * Self::INFINITE_CREASE))
-    }
-
-    fn with_irregular_sectors(self) -> Self {
-        Self(self.0 | Self::IRREGULAR_SECTORS)
-    }
-
-    /// On the boundary of a manifold part: the crease rule, unless it is a corner.
-    pub fn is_boundary(self) -> bool {
-        self.0 & Self::BOUNDARY != 0
-    }
-
-    /// Interpolated at every level.
-    pub fn is_corner(self) -> bool {
-        self.0 & Self::CORNER != 0
-    }
-
-    /// Other than four faces inside, two on the boundary, one at a corner.
-    pub fn is_extraordinary(self) -> bool {
-        self.0 & Self::EXTRAORDINARY != 0
-    }
-
-    /// Semi-sharp, or an end of a semi-sharp edge.
-    pub fn is_semi_sharp(self) -> bool {
-        self.0 & Self::SEMI_SHARP != 0
-    }
-
-    /// An end of an infinitely sharp edge between two faces.
-    pub fn has_infinite_crease(self) -> bool {
-        self.0 & Self::INFINITE_CREASE != 0
-    }
-
-    /// More than one fan of faces, or an edge of more than two faces.
-    pub fn is_non_manifold(self) -> bool {
-        self.0 & Self::NON_MANIFOLD != 0
-    }
-
-    /// Smooth, a boundary without creases, or a sharpened boundary vertex: the rule follows from the tag alone.
-    pub fn is_plain(self) -> bool {
-        self.0 & (Self::SEMI_SHARP | Self::INFINITE_CREASE | Self::NON_MANIFOLD) == 0
-    }
-
-    /// Quads all of whose vertices are so have a bicubic limit patch.
-    pub fn is_regular(self) -> bool {
-        let is_cut = self.0 & (Self::INFINITE_CREASE | Self::NON_MANIFOLD) != 0;
-        let irregular = if is_cut { Self::IRREGULAR_SECTORS } else { Self::EXTRAORDINARY };
-        self.0 & (irregular | Self::BESIDE_NON_QUAD | Self::SEMI_SHARP) == 0
-    }
-
-    /// All faces at the vertex are quads.
-    pub fn touches_only_quads(self) -> bool {
-        self.0 & Self::BESIDE_NON_QUAD == 0
-    }
-
-    /// The tag of the vertex that it becomes one level down, where all faces are quads; sharpness apart.
-    pub(crate) fn child(self) -> Self {
-        Self(self.0 & !Self::BESIDE_NON_QUAD)
-    }
-}
 
 /// Where a face lies: the square of side 2^-depth whose lower corner is (u, v) 2^-depth, in a Ptex face's domain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -156,7 +41,7 @@ impl Location {
 
 /// Which half-edges belong to which face.
 #[derive(Clone, Debug)]
-enum Faces {
+pub(crate) enum Faces {
     /// Face f has the half-edges 4 f to 4 f + 3.
     Quads,
     /// Face f has the half-edges `first[f]` to `first[f + 1] - 1`; `of[h]` is h's face.
@@ -166,7 +51,7 @@ enum Faces {
 /// The half-edges of one level.
 #[derive(Clone, Debug)]
 pub struct Level {
-    faces: Faces,
+    pub(crate) faces: Faces,
     /// Vertex at the start of each half-edge.
     pub origins: Vec<u32>,
     /// Half-edge on the other side, itself on the boundary and on an edge that is not manifold, [`NONE`] where that is
@@ -211,29 +96,6 @@ impl Level {
             hidden: Vec::new(),
             locations: Vec::new(),
         }
-    }
-
-    /// Level 0.
-    pub fn from_mesh(mesh: &ControlMesh) -> Result<Self, Error> {
-        mesh.validate()?;
-        let mut level = Self::of_quads(mesh.face_vertices.clone(), Vec::new());
-        if mesh.face_sizes.iter().any(|&n| n != 4) {
-            level.faces = mixed_faces(&mesh.face_sizes);
-        }
-        level.options = mesh.options;
-        let vertex_count = mesh.positions.len();
-        let shared_edges = pair_half_edges(&mut level, vertex_count);
-        level.find_fans(vertex_count, shared_edges);
-        level.set_sharpness(mesh);
-        level.tag_vertices(mesh);
-        level.drawn_count = mesh.face_count();
-        level.hide_faces(mesh);
-        let mut ptex_face = 0;
-        for &sides in &mesh.face_sizes {
-            level.locations.push(Location { ptex_face, ..Location::default() });
-            ptex_face += if sides == 4 { 1 } else { sides };
-        }
-        Ok(level)
     }
 
     /// Number of faces.
@@ -383,7 +245,7 @@ impl Level {
     /// along a crease) or of a regular corner (one face).
     ///
     /// It takes all of them: a patch may not border one two levels finer across a crease either.
-    fn has_regular_sectors(&self, vertex: u32, is_corner: bool) -> bool {
+    pub(crate) fn has_regular_sectors(&self, vertex: u32, is_corner: bool) -> bool {
         let infinite_count = self.incident_edges(vertex).iter().filter(|&&edge| self.is_infinite(edge)).count();
         let regular_face_count = match infinite_count {
             0 | 1 => return false,
@@ -414,7 +276,7 @@ impl Level {
         self.spokes_from(self.starts[vertex as usize])
     }
 
-    fn spokes_from(&self, start: u32) -> Spokes<'_> {
+    pub(crate) fn spokes_from(&self, start: u32) -> Spokes<'_> {
         Spokes { level: self, start, current: start }
     }
 
@@ -517,163 +379,6 @@ impl Level {
         }
         Sector { spokes, is_closed: is_closed || is_dart }
     }
-
-    /// Finds where the fans of each vertex start.
-    fn find_fans(&mut self, vertex_count: usize, shared_edges: Vec<Vec<u32>>) {
-        let mut face_counts = vec![0_u32; vertex_count];
-        let mut suspects = Vec::new();
-        self.starts = vec![NONE; vertex_count];
-        for half_edge in 0..self.origins.len() as u32 {
-            let vertex = self.origin(half_edge);
-            face_counts[vertex as usize] += 1;
-            let start = self.starts[vertex as usize];
-            if start == NONE || self.is_unpaired(half_edge) {
-                if start != NONE && self.is_unpaired(start) {
-                    suspects.push(vertex);
-                } else {
-                    self.starts[vertex as usize] = half_edge;
-                }
-            }
-        }
-        for (vertex, &count) in (0..).zip(&face_counts) {
-            if count > 0 && self.spokes(vertex).count() as u32 != count {
-                suspects.push(vertex);
-            }
-        }
-        suspects.extend(shared_edges.iter().flatten().flat_map(|&h| [self.origin(h), self.head(h)]));
-        if suspects.is_empty() {
-            return;
-        }
-        let mut fans: HashMap<u32, Vec<u32>> = suspects.into_iter().map(|vertex| (vertex, Vec::new())).collect();
-        let mut spokes_of: HashMap<u32, Vec<u32>> = HashMap::new();
-        for half_edge in 0..self.origins.len() as u32 {
-            let vertex = self.origin(half_edge);
-            if fans.contains_key(&vertex) {
-                spokes_of.entry(vertex).or_default().push(half_edge);
-            }
-        }
-        for (vertex, starts) in &mut fans {
-            let mut left = spokes_of.remove(vertex).unwrap_or_default();
-            // Open fans start at their unpaired spoke; what is left then are closed ones.
-            left.sort_by_key(|&spoke| (!self.is_unpaired(spoke), spoke));
-            while let Some(&start) = left.first() {
-                starts.push(start);
-                let met: Vec<u32> = self.spokes_from(start).collect();
-                left.retain(|spoke| !met.contains(spoke));
-            }
-            self.starts[*vertex as usize] = starts.first().copied().unwrap_or(NONE);
-        }
-        self.non_manifold = Some(Box::new(NonManifold::new(shared_edges, fans)));
-    }
-
-    /// Takes over the cage's creases and sharp vertices; corners come with the tags.
-    fn set_sharpness(&mut self, mesh: &ControlMesh) {
-        let sorted = |a: u32, b: u32| (a.min(b), a.max(b));
-        // A later tag overrides an earlier one.
-        let creases: HashMap<(u32, u32), f32> = mesh
-            .creases
-            .iter()
-            .map(|crease| (sorted(crease.vertices[0], crease.vertices[1]), crease.sharpness))
-            .collect();
-        if creases.values().any(|&sharpness| sharpness > 0.0) {
-            let mut is_end = vec![false; mesh.positions.len()];
-            creases.keys().for_each(|&(a, b)| {
-                is_end[a as usize] = true;
-                is_end[b as usize] = true;
-            });
-            self.edge_sharpness = vec![0.0; self.origins.len()];
-            for half_edge in 0..self.origins.len() as u32 {
-                let (a, b) = (self.origin(half_edge), self.head(half_edge));
-                if is_end[a as usize] && is_end[b as usize] {
-                    let sharpness = creases.get(&sorted(a, b)).copied().unwrap_or(0.0);
-                    self.edge_sharpness[half_edge as usize] = sharpness.clamp(0.0, INFINITE_SHARPNESS);
-                }
-            }
-        }
-        if mesh.corners.iter().any(|corner| corner.sharpness > 0.0) {
-            self.vertex_sharpness = vec![0.0; mesh.positions.len()];
-            for corner in &mesh.corners {
-                self.vertex_sharpness[corner.vertex as usize] = corner.sharpness.clamp(0.0, INFINITE_SHARPNESS);
-            }
-        }
-    }
-
-    fn tag_vertices(&mut self, mesh: &ControlMesh) {
-        self.tags = vec![VertexTag::default(); mesh.positions.len()];
-        for vertex in 0..mesh.positions.len() as u32 {
-            if self.starts[vertex as usize] != NONE {
-                self.tags[vertex as usize] = self.vertex_tag(vertex);
-            }
-        }
-    }
-
-    /// The tag of a vertex all of whose faces are in this level.
-    pub(crate) fn vertex_tag(&self, vertex: u32) -> VertexTag {
-        let (mut face_count, mut beside_non_quad) = (0, false);
-        for spoke in self.all_spokes(vertex) {
-            face_count += 1;
-            beside_non_quad |= self.sides(self.face(spoke)) != 4;
-        }
-        let given = self.vertex_sharpness.get(vertex as usize).copied().unwrap_or(0.0);
-        let topological_corner = face_count == 1 && self.options.boundary == BoundaryInterpolation::EdgeAndCorner;
-        let corner = given >= INFINITE_SHARPNESS || topological_corner;
-        let is_manifold = self.non_manifold.as_ref().is_none_or(|parts| !parts.fans.contains_key(&vertex));
-        let tag = if is_manifold {
-            let boundary = self.is_unpaired(self.starts[vertex as usize]);
-            VertexTag::new(face_count, boundary, corner, beside_non_quad)
-        } else {
-            VertexTag::non_manifold(corner || !self.is_non_manifold_crease(vertex, face_count), beside_non_quad)
-        };
-        let has_sharpness = !self.edge_sharpness.is_empty() || given > 0.0;
-        let tag = if has_sharpness { self.tag_with_sharpness(vertex, tag) } else { tag };
-        let is_cut = tag.is_non_manifold() || tag.has_infinite_crease();
-        if is_cut && !self.has_regular_sectors(vertex, tag.is_corner()) { tag.with_irregular_sectors() } else { tag }
-    }
-
-    /// The tag of a vertex with what the sharpness at it adds.
-    fn tag_with_sharpness(&self, vertex: u32, tag: VertexTag) -> VertexTag {
-        let own = self.vertex_sharpness.get(vertex as usize).copied().unwrap_or(0.0);
-        let (mut semi_sharp, mut infinite) = (is_semi_sharp(own) && !tag.is_corner(), false);
-        for spoke in self.all_spokes(vertex).filter(|&spoke| !self.is_unpaired(spoke)) {
-            let sharpness = self.sharpness(spoke);
-            semi_sharp |= is_semi_sharp(sharpness);
-            infinite |= sharpness >= INFINITE_SHARPNESS;
-        }
-        tag.with_sharpness(semi_sharp, infinite)
-    }
-
-    /// Whether a vertex lies inside a crease of edges of more than two faces: two such edges, no boundary and more faces
-    /// than edges. All other vertices that are not manifold are corners (OpenSubdiv's rule).
-    fn is_non_manifold_crease(&self, vertex: u32, face_count: u32) -> bool {
-        let edges = self.incident_edges(vertex);
-        let shared_count = edges.iter().filter(|edge| self.sharing(edge).len() > 1).count();
-        let has_boundary = edges.iter().any(|&edge| self.is_boundary(edge));
-        shared_count == 2 && !has_boundary && face_count as usize > edges.len()
-    }
-
-    fn hide_faces(&mut self, mesh: &ControlMesh) {
-        let no_boundary = mesh.options.boundary == BoundaryInterpolation::None;
-        if mesh.holes.is_empty() && !no_boundary {
-            return;
-        }
-        self.hidden = vec![false; self.face_count() as usize];
-        if no_boundary {
-            // A vertex on the boundary has a limit only if all its boundary edges were made infinitely sharp.
-            for vertex in (0..mesh.positions.len() as u32).filter(|&v| self.starts[v as usize] != NONE) {
-                let is_open = self.incident_edges(vertex).iter().any(|&edge| {
-                    let given = self.edge_sharpness.get(edge as usize).copied().unwrap_or(0.0);
-                    self.is_boundary(edge) && given < INFINITE_SHARPNESS
-                });
-                if is_open {
-                    let faces: Vec<u32> = self.all_spokes(vertex).map(|spoke| self.face(spoke)).collect();
-                    faces.into_iter().for_each(|face| self.hidden[face as usize] = true);
-                }
-            }
-        }
-        for &hole in &mesh.holes {
-            self.hidden[hole as usize] = true;
-        }
-    }
 }
 
 /// Faces around a vertex that share one limit rule and normal, counter-clockwise.
@@ -729,60 +434,4 @@ impl Iterator for Spokes<'_> {
         self.current = if turned == incoming || turned == self.start { NONE } else { turned };
         Some(spoke)
     }
-}
-
-fn mixed_faces(sizes: &[u32]) -> Faces {
-    let mut first = Vec::with_capacity(sizes.len() + 1);
-    let mut of = Vec::new();
-    let mut end = 0;
-    for (face, &sides) in sizes.iter().enumerate() {
-        first.push(end);
-        end += sides;
-        of.resize(end as usize, face as u32);
-    }
-    first.push(end);
-    Faces::Mixed { first, of }
-}
-
-/// Finds the twin of every half-edge: half-edges are bucketed by their lower vertex, and paired within the bucket.
-/// Returns the half-edges of each edge that is not manifold (more than two faces, or two that run the same way along it);
-/// those stay unpaired.
-fn pair_half_edges(level: &mut Level, vertex_count: usize) -> Vec<Vec<u32>> {
-    let count = level.origins.len() as u32;
-    let ends = |h: u32| {
-        let (a, b) = (level.origin(h), level.head(h));
-        (a.min(b), a.max(b))
-    };
-    let mut bucket_ends = vec![0_u32; vertex_count + 1];
-    for h in 0..count {
-        bucket_ends[ends(h).0 as usize + 1] += 1;
-    }
-    for i in 0..vertex_count {
-        bucket_ends[i + 1] += bucket_ends[i];
-    }
-    let mut cursor = bucket_ends.clone();
-    let mut sorted = vec![(0_u32, 0_u32); count as usize];
-    for h in 0..count {
-        let (low, high) = ends(h);
-        sorted[cursor[low as usize] as usize] = (high, h);
-        cursor[low as usize] += 1;
-    }
-    let mut twins: Vec<u32> = (0..count).collect();
-    let mut shared_edges = Vec::new();
-    for low in 0..vertex_count {
-        let bucket = &mut sorted[bucket_ends[low] as usize..bucket_ends[low + 1] as usize];
-        bucket.sort_unstable();
-        for edge in bucket.chunk_by(|a, b| a.0 == b.0) {
-            match *edge {
-                [_] => {}
-                [(_, a), (_, b)] if level.origin(a) != level.origin(b) => {
-                    twins[a as usize] = b;
-                    twins[b as usize] = a;
-                }
-                _ => shared_edges.push(edge.iter().map(|&(_, h)| h).collect()),
-            }
-        }
-    }
-    level.twins = twins;
-    shared_edges
 }
