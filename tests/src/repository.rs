@@ -37,6 +37,27 @@ pub fn model(name: &str) -> Option<PathBuf> {
     models().into_iter().find(|path| stem(path) == name)
 }
 
+/// Beginnings of the names of scenes that are about rules. Rules do not change how patches are tessellated: where that is
+/// what is tested, one factor is enough for them.
+const RULES: [&str; 11] = [
+    "boundary_",
+    "chaikin_",
+    "corner_",
+    "crease_",
+    "cube_all_",
+    "dart_",
+    "edit_",
+    "hole_",
+    "nonmanifold_",
+    "smooth_triangles",
+    "triangles_",
+];
+
+/// Whether a scene is about rules and not about shapes.
+pub fn is_about_rules(mesh: &Path) -> bool {
+    RULES.iter().any(|rule| stem(mesh).starts_with(rule))
+}
+
 /// A file's name without its extension.
 pub fn stem(path: &Path) -> &str {
     path.file_stem().and_then(OsStr::to_str).expect("mesh files have plain names")

@@ -40,7 +40,8 @@ fn plain_scenes() -> Vec<PathBuf> {
 fn judged_stride(case: &Case) -> usize {
     match (stem(&case.mesh), case.tess) {
         ("valence_360", _) => 29,
-        (_, "16") => 5,
+        (_, "16") => 7,
+        (_, "7.3" | "8") => 3,
         _ => 1,
     }
 }

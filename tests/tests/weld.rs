@@ -7,7 +7,7 @@ use planish_tests::folder::temporary;
 use planish_tests::parallel::check_all;
 use planish_tests::ply::{Dump, Vertex};
 use planish_tests::program::Planish;
-use planish_tests::repository::{models, scene, scenes, stem};
+use planish_tests::repository::{is_about_rules, models, scene, scenes, stem};
 use planish_tests::weld::faults;
 
 /// Most faults that are told of one dump.
@@ -49,26 +49,6 @@ const UNWELDABLE: [&str; 10] = [
     "flat_pair",
     "zero_area_face",
 ];
-
-/// Beginnings of the names of scenes that are about rules. Rules do not change how patches are tessellated: one factor of
-/// each spacing is enough for them.
-const RULES: [&str; 11] = [
-    "boundary_",
-    "chaikin_",
-    "corner_",
-    "crease_",
-    "cube_all_",
-    "dart_",
-    "edit_",
-    "hole_",
-    "nonmanifold_",
-    "smooth_triangles",
-    "triangles_",
-];
-
-fn is_about_rules(mesh: &Path) -> bool {
-    RULES.iter().any(|rule| stem(mesh).starts_with(rule))
-}
 
 fn check_every_mesh(flags: &[&str]) {
     check_meshes(flags, |_| true);
