@@ -7,6 +7,7 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use planish_scene::{Camera, LoadOptions, Scene, load};
 use planish_subdiv::ControlMesh;
+use planish_subdiv::mesh::Creasing;
 use planish_subdiv::rules::{VertexRule, is_semi_sharp, vertex_rule};
 use planish_subdiv::topology::{Level, NONE};
 use serde::Serialize;
@@ -86,8 +87,11 @@ impl Cage {
         // may be turned against each other.
         let mesh = self.mesh();
         let is_closed = self.facts.boundary_edges == 0 && mesh.holes.is_empty() && mesh.edits.is_empty();
-        let is_manifold = !self.facts.sharp_features.contains_key("non_manifold_edges");
-        is_closed && is_manifold && backs_are_hidden(self.mesh(), camera.eye.to_array())
+        let has = |feature: &str| self.facts.sharp_features.contains_key(feature);
+        let is_manifold = !has("non_manifold_edges") && !has("non_manifold_vertices");
+        // Chaikin's rule has weights below 0 where an edge sharper than 1 becomes smooth.
+        let is_within = mesh.options.creasing == Creasing::Uniform || !has("semi_sharp_edges");
+        is_closed && is_manifold && is_within && backs_are_hidden(self.mesh(), camera.eye.to_array())
     }
 }
 

@@ -1,6 +1,6 @@
 //! Level 0 from a cage: who borders whom, where fans begin, what is sharp and what is hidden.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::error::Error;
 use crate::mesh::{BoundaryInterpolation, ControlMesh, INFINITE_SHARPNESS};
@@ -70,10 +70,12 @@ impl Level {
             let mut left = spokes_of.remove(vertex).unwrap_or_default();
             // Open fans start at their unpaired spoke; what is left then are closed ones.
             left.sort_by_key(|&spoke| (!self.is_unpaired(spoke), spoke));
-            while let Some(&start) = left.first() {
-                starts.push(start);
-                let met: Vec<u32> = self.spokes_from(start).collect();
-                left.retain(|spoke| !met.contains(spoke));
+            let mut met = HashSet::new();
+            for start in left {
+                if !met.contains(&start) {
+                    starts.push(start);
+                    met.extend(self.spokes_from(start));
+                }
             }
             self.starts[*vertex as usize] = starts.first().copied().unwrap_or(NONE);
         }

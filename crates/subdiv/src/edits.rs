@@ -33,6 +33,8 @@ pub fn deepest_level(mesh: &ControlMesh) -> u32 {
 
 /// Checks that every path has the right length and that its entries exist.
 pub(crate) fn validate(mesh: &ControlMesh) -> Result<(), Error> {
+    // Several may add to one point: together they are held to the bound of a coordinate.
+    let mut total = 0.0_f32;
     for (index, edit) in (0..).zip(&mesh.edits) {
         let is_hole = edit.operation == EditOperation::Hole;
         if edit.path.len() < 2 {
@@ -61,7 +63,9 @@ pub(crate) fn validate(mesh: &ControlMesh) -> Result<(), Error> {
             | EditOperation::AddEdgeSharpness(s) => ([0.0; 3], s),
             EditOperation::Hole => ([0.0; 3], 0.0),
         };
-        if !value.iter().all(|c| c.abs() <= crate::mesh::MAX_COORDINATE) || sharpness.is_nan() {
+        total += value.iter().fold(0.0, |m: f32, c| m.max(c.abs()));
+        let is_bounded = value.iter().all(|c| c.is_finite()) && total <= crate::mesh::MAX_COORDINATE;
+        if !is_bounded || sharpness.is_nan() {
             return Err(Error::EditValue { edit: index });
         }
     }
@@ -111,16 +115,19 @@ impl<'a> PathEdits<'a> {
     }
 
     /// The faces of the current level that must be split because an edit of a finer level reaches them, ascending: those
-    /// on its path and, unless it only makes a hole, all that touch them.
+    /// on its path and all that touch them, so that neighbours differ by one level; but the parent of a hole alone.
     pub fn forced_faces(&self, level: &Level) -> Vec<u32> {
-        let mut forced = Vec::new();
+        let (mut forced, mut vertices) = (Vec::new(), Vec::new());
         for (edit, &face) in self.edits.iter().zip(&self.faces).filter(|(edit, _)| edit_level(edit) > self.level) {
             forced.push(face);
-            if edit.operation != EditOperation::Hole {
-                let around = level.vertices(face).iter().flat_map(|&vertex| level.all_spokes(vertex));
-                forced.extend(around.map(|spoke| level.face(spoke)));
+            if edit.operation != EditOperation::Hole || edit_level(edit) > self.level + 1 {
+                vertices.extend(level.vertices(face));
             }
         }
+        vertices.sort_unstable();
+        vertices.dedup();
+        let around = vertices.into_iter().flat_map(|vertex| level.all_spokes(vertex));
+        forced.extend(around.map(|spoke| level.face(spoke)));
         forced.sort_unstable();
         forced.dedup();
         forced

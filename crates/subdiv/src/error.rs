@@ -50,7 +50,7 @@ pub enum Error {
         edit: u32,
     },
     /// A hierarchical edit's value is no usable number.
-    #[error("edit {edit} (from 0) has a value that is not finite, or beyond {max:e}", max = crate::mesh::MAX_COORDINATE)]
+    #[error("edit {edit} (from 0) has a value that is not finite, or beyond {max:e} with those before it", max = crate::mesh::MAX_COORDINATE)]
     EditValue {
         /// The edit.
         edit: u32,

@@ -1,6 +1,6 @@
 //! Feature-adaptive refinement (FAS section 3.3): topology only, one level after another.
 //!
-//! Of each level the irregular faces are split. What the next level must hold follows from their corners, the *core*:
+//! Of each level the irregular faces are split, and those that hierarchical edits of finer levels reach. What the next level must hold follows from their corners, the *core*:
 //! around every core vertex, the child at that vertex of every face there. Then each child of a split face has its
 //! whole one-ring, which is what a bicubic patch or a limit mask reads, and nothing else is made.
 
@@ -70,7 +70,8 @@ pub struct Refinement {
     pub levels: Vec<Level>,
     /// `splits[k]` made level k + 1.
     pub splits: Vec<Split>,
-    /// `split_faces[k]` are the faces of level k that were split; of the last level, the irregular leaves.
+    /// For each level the faces that were split: the irregular ones, and those that an edit of a finer level reaches; of
+    /// the last level, the irregular leaves.
     pub irregular_faces: Vec<Vec<u32>>,
     /// The mesh's hierarchical edits.
     pub edits: Vec<HierarchicalEdit>,

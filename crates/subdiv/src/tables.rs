@@ -10,7 +10,7 @@ use crate::edits::{PointEdit, combine};
 use crate::limit::{LimitTable, SharedLimitWeights};
 use crate::mesh::HierarchicalEdit;
 use crate::patch::{FillingQuad, PatchInfo, RegularPatch, control_points};
-use crate::refine::Refinement;
+use crate::refine::{CreasePatches, Refinement};
 use crate::stencil::{SharedWeights, StencilTable, has_large_faces};
 use crate::topology::{Level, NONE};
 
@@ -157,7 +157,8 @@ impl Tables {
             let beside = irregular_neighbours(level, face, &irregular);
             let (transition, leaf) = if is_last { (0, beside) } else { (beside, 0) };
             let location = level.locations[face as usize];
-            let single = if boundary == 0 { level.single_crease(face) } else { None };
+            let has_single = refinement.options.crease_patches == CreasePatches::Single && boundary == 0;
+            let single = if has_single { level.single_crease(face) } else { None };
             let (edge, sharpness) = single.map_or((0, 0.0), |(edge, sharpness)| (1 << edge, sharpness));
             let info = PatchInfo { location, level: k as u8, boundary, transition, leaf, crease: edge };
             counts.regular += u32::from(transition == 0);
@@ -182,7 +183,7 @@ impl Tables {
             first_point: self.levels[limit_level].points.start,
             table: &mut self.limits,
             of_vertex: vec![NONE; refinement.levels[limit_level].tags.len()],
-            of_sector: HashMap::new(),
+            of_corner: HashMap::new(),
             cache: SharedLimitWeights::default(),
         };
         for (i, &face) in (0..).zip(leaves) {
@@ -220,8 +221,8 @@ struct LimitPoints<'a> {
     table: &'a mut LimitTable,
     /// Of vertices with one normal.
     of_vertex: Vec<u32>,
-    /// Of the others, by the first spoke of the sector.
-    of_sector: HashMap<u32, u32>,
+    /// Of the others, by corner.
+    of_corner: HashMap<u32, u32>,
     cache: SharedLimitWeights,
 }
 
@@ -229,15 +230,22 @@ impl LimitPoints<'_> {
     /// The limit point at a corner: an outgoing half-edge of a vertex.
     fn point(&mut self, corner: u32) -> u32 {
         let vertex = self.level.origin(corner);
-        let slot = if self.level.tag(vertex).is_plain() {
-            &mut self.of_vertex[vertex as usize]
+        let is_plain = self.level.tag(vertex).is_plain();
+        let known = if is_plain {
+            self.of_vertex[vertex as usize]
         } else {
-            self.of_sector.entry(self.level.sector(corner).spokes[0]).or_insert(NONE)
+            self.of_corner.get(&corner).copied().unwrap_or(NONE)
         };
-        if *slot == NONE {
-            *slot = self.table.rows.len() as u32;
-            self.table.push_corner(self.level, corner, self.first_point, &mut self.cache);
+        if known != NONE {
+            return known;
         }
-        *slot
+        let point = self.table.rows.len() as u32;
+        if is_plain {
+            self.of_vertex[vertex as usize] = point;
+        } else {
+            self.of_corner.extend(self.level.sector(corner).spokes.into_iter().map(|spoke| (spoke, point)));
+        }
+        self.table.push_corner(self.level, corner, self.first_point, &mut self.cache);
+        point
     }
 }

@@ -5,7 +5,7 @@
 //! not hold the neighbour: a refined level holds the faces that are drawn or refined further and, around them, the
 //! faces that support them.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::mesh::{Creasing, INFINITE_SHARPNESS, MeshOptions};
 use crate::rules::is_semi_sharp;
@@ -305,14 +305,10 @@ impl Level {
             }
         }
         if self.non_manifold.is_some() {
-            let mut seen = Vec::new();
+            let mut seen = HashSet::new();
             edges.retain(|edge| {
                 let shared = self.sharing(edge);
-                let is_new = !seen.contains(&shared[0]);
-                if is_new && shared.len() > 1 {
-                    seen.push(shared[0]);
-                }
-                is_new
+                shared.len() == 1 || seen.insert(shared[0])
             });
         }
         edges
