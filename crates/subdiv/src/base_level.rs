@@ -22,6 +22,7 @@ impl Level {
         level.find_fans(vertex_count, shared_edges);
         level.set_sharpness(mesh);
         level.tag_vertices(mesh);
+        level.sum_semi_sharp_edges();
         level.drawn_count = mesh.face_count();
         level.hide_faces(mesh);
         let mut ptex_face = 0;

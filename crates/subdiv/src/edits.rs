@@ -111,6 +111,7 @@ impl<'a> PathEdits<'a> {
                 }
             }
         }
+        level.sum_semi_sharp_edges();
         moved
     }
 

@@ -6,7 +6,7 @@
 
 use std::collections::HashMap;
 
-use crate::ring::{Ring, Step};
+use crate::ring::{Decay, Ring, Step};
 use crate::rules::{self, BoundaryTangent, VertexRule};
 use crate::sharpness::SharpnessAtVertex;
 use crate::stencil::{StencilRow, boundary_neighbours, ring_pair, shared};
@@ -115,11 +115,11 @@ fn mask_weights(rule: LimitRule, mut push: impl FnMut([f64; 3])) {
 fn creased_mask(level: &Level, corner: u32) -> (Vec<u32>, Vec<[f64; 3]>) {
     let sharpness = SharpnessAtVertex::of(level, level.origin(corner));
     let sector = level.sector(corner);
-    let ring = Ring::new(level, &sector, &sharpness);
-    let (steps, last) = ring.decay(level, sharpness);
+    let decay = Decay::new(level, &sharpness);
+    let ring = Ring::new(level, &sector, &sharpness, &decay);
     let face_count = ring.face_count as u32;
     let mut weights = Vec::with_capacity(ring.points.len());
-    let (rule, ends) = last.before;
+    let (rule, ends) = decay.last.before;
     let limit_rule = match rule {
         VertexRule::Smooth | VertexRule::Dart => LimitRule::Smooth(face_count),
         VertexRule::Crease | VertexRule::Corner if ring.is_closed => LimitRule::Cone(face_count),
@@ -138,7 +138,7 @@ fn creased_mask(level: &Level, corner: u32) -> (Vec<u32>, Vec<[f64; 3]>) {
         weights[0][0] = 1.0 - 2.0 * rules::CREASE_LIMIT_END;
         ends.into_iter().for_each(|edge| weights[ring.edge_places[edge]][0] += rules::CREASE_LIMIT_END);
     }
-    for step in steps.iter().rev() {
+    for step in decay.steps.iter().rev() {
         weights = ring.carry_back(step, &weights);
     }
     (ring.points, weights)

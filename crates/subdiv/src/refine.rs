@@ -319,6 +319,7 @@ fn tag_children(parent: &Level, split: &Split, children: &Children, child: &mut 
         child.starts.push(parent.half_edges(face).map(|corner| at(corner, 2)).find(|&h| h != NONE).unwrap_or(NONE));
     }
     sharpness.hand_down(parent, split, &at, child);
+    child.sum_semi_sharp_edges();
     child.non_manifold =
         parent.non_manifold.as_ref().map(|parts| Box::new(split_non_manifold(parts, parent, split, children, &at)));
 }

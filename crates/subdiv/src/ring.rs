@@ -1,8 +1,9 @@
 //! The refinement of the ring around one vertex, over and over: what the limit at a semi-sharp vertex depends on.
 
-use crate::mesh::Creasing;
+use std::collections::HashMap;
+
 use crate::rules::{
-    self, VertexBlend, VertexRule, child_edge_sharpness, edge_crease_weight, is_semi_sharp, less_sharp,
+    self, SemiSharpEdges, VertexBlend, VertexRule, child_edge_sharpness, edge_crease_weight, is_semi_sharp, less_sharp,
 };
 use crate::sharpness::{SharpnessAtVertex, children_at_vertex, others_at};
 use crate::stencil::ring_pair;
@@ -38,70 +39,71 @@ impl Step {
     }
 }
 
+/// How the rules at a vertex change until nothing there is semi-sharp any more.
+#[derive(Clone, Debug)]
+pub(crate) struct Decay {
+    pub steps: Vec<Step>,
+    /// The rule from then on.
+    pub last: VertexBlend,
+}
+
+impl Decay {
+    /// Of a vertex with this sharpness.
+    pub fn new(level: &Level, sharpness: &SharpnessAtVertex) -> Self {
+        let creasing = level.options.creasing;
+        // The other semi-sharp edges at the far end of each edge.
+        let ends = sharpness.edges.iter().zip(&sharpness.ends);
+        let mut beyond: Vec<SemiSharpEdges> = ends.map(|(&s, &end)| others_at(level, s, end)).collect();
+        let (mut own, mut edges) = (sharpness.vertex, sharpness.edges.clone());
+        let mut steps = Vec::new();
+        loop {
+            let children = children_at_vertex(&edges, creasing);
+            let blend = VertexBlend::new([own, less_sharp(own)], [&edges, &children]);
+            if !is_semi_sharp(own) && !edges.iter().any(|&s| is_semi_sharp(s)) {
+                return Self { steps, last: blend };
+            }
+            let far: Vec<f32> =
+                edges.iter().zip(&beyond).map(|(&s, &others)| child_edge_sharpness(creasing, s, others)).collect();
+            let ends = children.iter().zip(&far);
+            let creases =
+                edges.iter().zip(ends).map(|(&s, (&near, &far))| edge_crease_weight(s, [near, far])).collect();
+            steps.push(Step { vertex: blend, creases });
+            // From now on the far end is the middle of an edge: its other half is all else that is sharp there.
+            beyond = far.iter().map(|&sharpness| SemiSharpEdges::of(&[sharpness])).collect();
+            (own, edges) = (less_sharp(own), children);
+        }
+    }
+
+    /// The edges that the vertex depends on as the ends of a crease, at some step.
+    fn crease_ends(&self) -> impl Iterator<Item = usize> {
+        let blends = self.steps.iter().map(|step| step.vertex).chain([self.last]);
+        blends
+            .flat_map(|blend| [blend.before, blend.after])
+            .filter(|(rule, _)| *rule == VertexRule::Crease)
+            .flat_map(|(_, ends)| ends)
+    }
+}
+
 impl Ring {
-    pub fn new(level: &Level, sector: &Sector, sharpness: &SharpnessAtVertex) -> Self {
+    pub fn new(level: &Level, sector: &Sector, sharpness: &SharpnessAtVertex, decay: &Decay) -> Self {
         let vertex = level.origin(sector.spokes[0]);
         let mut points = vec![vertex];
         points.extend(sector.spokes.iter().flat_map(|&spoke| ring_pair(level, spoke)));
         if !sector.is_closed {
             points.push(level.origin(level.previous(sector.spokes[sector.spokes.len() - 1])));
         }
-        let ring_end = points.len();
-        let face_count = sector.spokes.len();
-        let edge_places = (0..sharpness.ends.len())
-            .map(|edge| {
-                let end = sharpness.ends[edge];
-                let in_ring = (1..ring_end).step_by(2).find(|&place| points[place] == end);
-                in_ring.unwrap_or_else(|| {
-                    if sharpness.edges[edge] > 0.0 {
-                        points.push(end);
-                        points.len() - 1
-                    } else {
-                        usize::MAX
-                    }
-                })
-            })
-            .collect();
-        Self { points, face_count, is_closed: sector.is_closed, edge_places }
-    }
-
-    /// The steps until nothing at the vertex is semi-sharp, and the rule from then on.
-    pub fn decay(&self, level: &Level, sharpness: SharpnessAtVertex) -> (Vec<Step>, VertexBlend) {
-        let creasing = level.options.creasing;
-        let vertex = self.points[0];
-        // The other semi-sharp edges at the far end of each edge; only Chaikin's rule looks at them.
-        let mut beyond: Vec<Vec<f32>> = level
-            .incident_edges(vertex)
-            .into_iter()
-            .zip(&sharpness.ends)
-            .map(|(edge, &end)| {
-                if creasing == Creasing::Chaikin && is_semi_sharp(level.sharpness(edge)) {
-                    others_at(level, edge, end).filter(|&s| is_semi_sharp(s)).collect()
-                } else {
-                    Vec::new()
-                }
-            })
-            .collect();
-        let SharpnessAtVertex { vertex: mut own, mut edges, .. } = sharpness;
-        let mut steps = Vec::new();
-        loop {
-            let children = children_at_vertex(&edges, creasing);
-            let blend = VertexBlend::new([own, less_sharp(own)], [&edges, &children]);
-            if !is_semi_sharp(own) && !edges.iter().any(|&s| is_semi_sharp(s)) {
-                return (steps, blend);
+        // Backwards, so that of two places of one end the first stays.
+        let in_ring: HashMap<u32, usize> =
+            (1..points.len()).step_by(2).rev().map(|place| (points[place], place)).collect();
+        let place = |end: &u32| in_ring.get(end).copied().unwrap_or(usize::MAX);
+        let mut edge_places: Vec<usize> = sharpness.ends.iter().map(place).collect();
+        for edge in decay.crease_ends() {
+            if edge_places[edge] == usize::MAX {
+                edge_places[edge] = points.len();
+                points.push(sharpness.ends[edge]);
             }
-            let far: Vec<f32> = edges
-                .iter()
-                .zip(&beyond)
-                .map(|(&sharpness, others)| child_edge_sharpness(creasing, sharpness, others.iter().copied()))
-                .collect();
-            let ends = children.iter().zip(&far);
-            let creases =
-                edges.iter().zip(ends).map(|(&s, (&near, &far))| edge_crease_weight(s, [near, far])).collect();
-            steps.push(Step { vertex: blend, creases });
-            beyond = far.into_iter().map(|sharpness| vec![sharpness]).collect();
-            (own, edges) = (less_sharp(own), children);
         }
+        Self { points, face_count: sector.spokes.len(), is_closed: sector.is_closed, edge_places }
     }
 
     /// Weights of the points before a step that come to the same as these of the points after it.

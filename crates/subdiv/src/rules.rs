@@ -95,18 +95,49 @@ pub fn less_sharp(sharpness: f32) -> f32 {
     if sharpness >= INFINITE_SHARPNESS { INFINITE_SHARPNESS } else { (sharpness - 1.0).max(0.0) }
 }
 
-/// Sharpness of the child at one end of an edge. `others` holds the sharpness of the other edges at that end, in any
-/// order; Chaikin's rule averages the semi-sharp ones (DeRose et al. 1998, section 5).
-pub fn child_edge_sharpness(creasing: Creasing, sharpness: f32, others: impl Iterator<Item = f32>) -> f32 {
-    if creasing == Creasing::Uniform || !is_semi_sharp(sharpness) {
+/// Semi-sharp edges at a vertex, or some of them: the sum of their sharpness, and how many they are.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SemiSharpEdges {
+    /// Sum of their sharpness.
+    pub sum: f64,
+    /// Their number.
+    pub count: u32,
+}
+
+impl SemiSharpEdges {
+    /// Adds an edge, if it is one.
+    pub fn add(&mut self, sharpness: f32) {
+        if is_semi_sharp(sharpness) {
+            self.sum += f64::from(sharpness);
+            self.count += 1;
+        }
+    }
+
+    /// Those of some edges.
+    pub fn of(edges: &[f32]) -> Self {
+        let mut all = Self::default();
+        edges.iter().for_each(|&sharpness| all.add(sharpness));
+        all
+    }
+
+    /// All but an edge of this sharpness.
+    #[must_use]
+    pub fn without(self, sharpness: f32) -> Self {
+        if !is_semi_sharp(sharpness) {
+            return self;
+        }
+        Self { sum: self.sum - f64::from(sharpness), count: self.count.saturating_sub(1) }
+    }
+}
+
+/// Sharpness of the child at one end of an edge, by that of the other edges at that end, of which Chaikin's rule averages
+/// the semi-sharp ones (DeRose et al. 1998, section 5).
+pub fn child_edge_sharpness(creasing: Creasing, sharpness: f32, others: SemiSharpEdges) -> f32 {
+    if creasing == Creasing::Uniform || !is_semi_sharp(sharpness) || others.count == 0 {
         return less_sharp(sharpness);
     }
-    let (mut sum, mut count) = (0.0_f32, 0.0_f32);
-    for other in others.filter(|&other| is_semi_sharp(other)) {
-        sum += other;
-        count += 1.0;
-    }
-    if count == 0.0 { less_sharp(sharpness) } else { (0.75 * sharpness + 0.25 * (sum / count) - 1.0).max(0.0) }
+    let average = others.sum / f64::from(others.count);
+    (0.75 * f64::from(sharpness) + 0.25 * average - 1.0).max(0.0) as f32
 }
 
 /// The rule of a vertex in one refinement step: `weight` times the rule that its sharpness asks for at the level before,

@@ -1,7 +1,7 @@
 //! Sharpness at the vertices and edges of a level, gathered for the rules.
 
 use crate::mesh::Creasing;
-use crate::rules::{VertexBlend, child_edge_sharpness, less_sharp};
+use crate::rules::{SemiSharpEdges, VertexBlend, child_edge_sharpness, less_sharp};
 use crate::topology::Level;
 
 /// Sharpness of a vertex and of all edges at it.
@@ -38,8 +38,8 @@ impl SharpnessAtVertex {
 
 /// Sharpness of the children of all edges at a vertex.
 pub(crate) fn children_at_vertex(edges: &[f32], creasing: Creasing) -> Vec<f32> {
-    let others = |i: usize| edges.iter().enumerate().filter(move |&(j, _)| j != i).map(|(_, &s)| s);
-    (0..).zip(edges).map(|(i, &sharpness)| child_edge_sharpness(creasing, sharpness, others(i))).collect()
+    let all = SemiSharpEdges::of(edges);
+    edges.iter().map(|&sharpness| child_edge_sharpness(creasing, sharpness, all.without(sharpness))).collect()
 }
 
 /// Sharpness of the two children of a half-edge's edge, at its origin and at its head. Those of an unpaired one are
@@ -50,14 +50,10 @@ pub(crate) fn child_sharpness(level: &Level, half_edge: u32) -> [f32; 2] {
     }
     let sharpness = level.sharpness(half_edge);
     [level.origin(half_edge), level.head(half_edge)]
-        .map(|end| child_edge_sharpness(level.options.creasing, sharpness, others_at(level, half_edge, end)))
+        .map(|end| child_edge_sharpness(level.options.creasing, sharpness, others_at(level, sharpness, end)))
 }
 
-/// Sharpness of the other edges between two faces at an end of a half-edge's edge.
-pub(crate) fn others_at(level: &Level, half_edge: u32, end: u32) -> impl Iterator<Item = f32> {
-    let same = [half_edge, level.twin(half_edge)];
-    level
-        .all_spokes(end)
-        .filter(move |spoke| !same.contains(spoke) && !level.is_unpaired(*spoke))
-        .map(|spoke| level.sharpness(spoke))
+/// The other semi-sharp edges at an end of an edge of this sharpness; only Chaikin's rule looks at them.
+pub(crate) fn others_at(level: &Level, sharpness: f32, end: u32) -> SemiSharpEdges {
+    level.semi_sharp_edges.get(end as usize).copied().unwrap_or_default().without(sharpness)
 }

@@ -8,7 +8,7 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::mesh::{Creasing, INFINITE_SHARPNESS, MeshOptions};
-use crate::rules::is_semi_sharp;
+use crate::rules::{SemiSharpEdges, is_semi_sharp};
 pub use crate::vertex_tag::VertexTag;
 
 /// "There is none", for any index.
@@ -69,6 +69,8 @@ pub struct Level {
     pub(crate) edge_sharpness: Vec<f32>,
     /// Sharpness of each vertex that is not infinitely sharp; empty if all are smooth.
     pub(crate) vertex_sharpness: Vec<f32>,
+    /// The semi-sharp edges at each vertex, for Chaikin's rule; else empty.
+    pub(crate) semi_sharp_edges: Vec<SemiSharpEdges>,
     /// The mesh's.
     pub(crate) options: MeshOptions,
     /// Faces `0..drawn_count` belong to the surface, unless `hidden` says otherwise; the rest only support them.
@@ -91,6 +93,7 @@ impl Level {
             non_manifold: None,
             edge_sharpness: Vec::new(),
             vertex_sharpness: Vec::new(),
+            semi_sharp_edges: Vec::new(),
             options: MeshOptions::default(),
             drawn_count: 0,
             hidden: Vec::new(),
@@ -318,6 +321,24 @@ impl Level {
     pub(crate) fn other_end(&self, half_edge: u32, vertex: u32) -> u32 {
         let origin = self.origin(half_edge);
         if origin == vertex { self.head(half_edge) } else { origin }
+    }
+
+    /// Sums up the semi-sharp edges at each vertex, after sharpness has changed.
+    pub(crate) fn sum_semi_sharp_edges(&mut self) {
+        self.semi_sharp_edges.clear();
+        if self.options.creasing == Creasing::Uniform || self.edge_sharpness.is_empty() {
+            return;
+        }
+        self.semi_sharp_edges.resize(self.starts.len(), SemiSharpEdges::default());
+        for half_edge in 0..self.origins.len() as u32 {
+            // Once an edge; NONE, where the level does not hold the other side, is the largest number.
+            if half_edge < self.twin(half_edge) {
+                let sharpness = self.edge_sharpness[half_edge as usize];
+                for end in [self.origin(half_edge), self.head(half_edge)] {
+                    self.semi_sharp_edges[end as usize].add(sharpness);
+                }
+            }
+        }
     }
 
     /// Sharpness of a half-edge's edge: infinite on the boundary and where the edge is not manifold.
