@@ -80,7 +80,12 @@ impl Level {
             }
             self.starts[*vertex as usize] = starts.first().copied().unwrap_or(NONE);
         }
-        self.non_manifold = Some(Box::new(NonManifold::new(shared_edges, fans)));
+        let vertices: Vec<u32> = fans.keys().copied().collect();
+        let mut parts = Box::new(NonManifold::new(shared_edges, fans));
+        self.non_manifold = Some(parts.clone());
+        let creases = vertices.into_iter().filter(|&v| self.is_non_manifold_crease(v, face_counts[v as usize]));
+        parts.creases = creases.collect();
+        self.non_manifold = Some(parts);
     }
 
     /// Takes over the cage's creases and sharp vertices; corners come with the tags.
@@ -134,12 +139,13 @@ impl Level {
         let given = self.vertex_sharpness.get(vertex as usize).copied().unwrap_or(0.0);
         let topological_corner = face_count == 1 && self.options.boundary == BoundaryInterpolation::EdgeAndCorner;
         let corner = given >= INFINITE_SHARPNESS || topological_corner;
-        let is_manifold = self.non_manifold.as_ref().is_none_or(|parts| !parts.fans.contains_key(&vertex));
-        let tag = if is_manifold {
-            let boundary = self.is_unpaired(self.starts[vertex as usize]);
-            VertexTag::new(face_count, boundary, corner, beside_non_quad)
-        } else {
-            VertexTag::non_manifold(corner || !self.is_non_manifold_crease(vertex, face_count), beside_non_quad)
+        let parts = self.non_manifold.as_ref().filter(|parts| parts.fans.contains_key(&vertex));
+        let tag = match parts {
+            Some(parts) => VertexTag::non_manifold(corner || !parts.creases.contains(&vertex), beside_non_quad),
+            None => {
+                let boundary = self.is_unpaired(self.starts[vertex as usize]);
+                VertexTag::new(face_count, boundary, corner, beside_non_quad)
+            }
         };
         let has_sharpness = !self.edge_sharpness.is_empty() || given > 0.0;
         let tag = if has_sharpness { self.tag_with_sharpness(vertex, tag) } else { tag };

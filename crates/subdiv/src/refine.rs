@@ -4,7 +4,7 @@
 //! around every core vertex, the child at that vertex of every face there. Then each child of a split face has its
 //! whole one-ring, which is what a bicubic patch or a limit mask reads, and nothing else is made.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::edits::{self, PathEdits};
 use crate::error::Error;
@@ -396,7 +396,7 @@ fn split_non_manifold(
     at: &impl Fn(u32, u32) -> u32,
 ) -> NonManifold {
     let mut shared_edges = Vec::new();
-    let mut fans = HashMap::new();
+    let (mut fans, mut creases) = (HashMap::new(), HashSet::new());
     let first_edge = split.vertices.len() as u32;
     for edge in &parts.shared_edges {
         let place = children.edges[edge[0] as usize];
@@ -414,12 +414,18 @@ fn split_non_manifold(
         // The middle has a fan of two faces in every face at the edge.
         let starts = edge.iter().map(|&h| at(parent.next(h), 3)).filter(|&h| h != NONE).collect();
         fans.insert(first_edge + place, starts);
+        creases.insert(first_edge + place);
     }
     for (&vertex, starts) in &parts.fans {
         let child = children.vertices[vertex as usize];
         if child != NONE {
             fans.insert(child, starts.iter().map(|&start| at(start, 0)).collect());
+            if parts.creases.contains(&vertex) {
+                creases.insert(child);
+            }
         }
     }
-    NonManifold::new(shared_edges, fans)
+    let mut parts = NonManifold::new(shared_edges, fans);
+    parts.creases = creases;
+    parts
 }

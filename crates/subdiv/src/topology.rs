@@ -417,12 +417,14 @@ pub(crate) struct NonManifold {
     places: HashMap<u32, u32>,
     /// Vertices that are not manifold, and where each of their fans starts.
     pub fans: HashMap<u32, Vec<u32>>,
+    /// Those of them that lie within a crease; the others are corners.
+    pub creases: HashSet<u32>,
 }
 
 impl NonManifold {
     pub fn new(shared_edges: Vec<Vec<u32>>, fans: HashMap<u32, Vec<u32>>) -> Self {
         let places = (0..).zip(&shared_edges).flat_map(|(place, edge)| edge.iter().map(move |&h| (h, place))).collect();
-        Self { shared_edges, places, fans }
+        Self { shared_edges, places, fans, creases: HashSet::new() }
     }
 
     fn shared_edge(&self, half_edge: u32) -> Option<&[u32]> {

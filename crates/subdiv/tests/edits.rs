@@ -147,3 +147,23 @@ fn edits_of_what_does_not_exist_are_refused() {
     assert_eq!(refused(&[0, 0], EditOperation::SetEdgeSharpness(f32::NAN)), Error::EditValue { edit: 0 });
     assert_eq!(refused(&[0; 20], LIFT), Error::MaxLevel { asked: 18, max: 15 });
 }
+
+#[test]
+fn an_edit_that_changes_nothing_leaves_a_flipped_seam_as_it_was() {
+    let mut mesh = sheet(2);
+    mesh.positions.iter_mut().for_each(|p| p[2] = p[0] * p[1]);
+    mesh.face_vertices[..4].reverse();
+    // The first face is turned over: vertex 1 of its child 0 is the middle of an edge whose two faces run the same way.
+    let samples = [(0, 0.0, 0.5), (0, 0.3, 0.6), (1, 0.0, 0.5), (2, 0.5, 0.0), (3, 0.1, 0.1)];
+    let surface = |mesh: &ControlMesh| {
+        let mut evaluator = Evaluator::new(mesh).expect("a legal cage");
+        samples.map(|(face, u, v)| evaluator.evaluate(face, u, v).expect("a limit").position)
+    };
+    let before = surface(&mesh);
+    for (child, vertex) in (0..4).flat_map(|child| (0..4).map(move |vertex| (child, vertex))) {
+        mesh.edits = vec![edit(&[0, child, vertex], EditOperation::SetVertexSharpness(0.0))];
+        for (a, b) in before.iter().zip(surface(&mesh)) {
+            assert!((0..3).all(|c| (a[c] - b[c]).abs() < 1e-12), "child {child}, vertex {vertex}: {a:?} became {b:?}");
+        }
+    }
+}
