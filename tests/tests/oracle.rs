@@ -70,7 +70,8 @@ fn check(case: &Case) -> Result<(), String> {
     let is_drawn = Cage::read(&case.mesh).drawn_ptex_faces();
     let all = Dump::read(&dump)?;
     check_coverage(&all.covered_areas(is_drawn.len())?, &is_drawn).map_err(|fault| outcome.told(&fault))?;
-    let stride = judged_stride(case);
+    let is_judged = |stride: usize| is_drawn.iter().step_by(stride).any(|&is_drawn| is_drawn);
+    let stride = Some(judged_stride(case)).filter(|&stride| is_judged(stride)).unwrap_or(1);
     let (mut judged, mut absent_faces) = (dump, 0);
     if stride > 1 {
         judged = folder.path().join("judged.ply");
