@@ -1,6 +1,7 @@
 //! Feature-adaptive refinement (FAS section 3.3): topology only, one level after another.
 //!
-//! Of each level the irregular faces are split, and those that hierarchical edits of finer levels reach. What the next level must hold follows from their corners, the *core*:
+//! Of each level the irregular faces are split, and those that hierarchical edits of finer levels reach. What the next
+//! level must hold follows from their corners, the *core*:
 //! around every core vertex, the child at that vertex of every face there. Then each child of a split face has its
 //! whole one-ring, which is what a bicubic patch or a limit mask reads, and nothing else is made.
 
