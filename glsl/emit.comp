@@ -1,172 +1,335 @@
 #version 460
-// variants: bspline=BSPLINE corners=CORNERS midpoints=MIDPOINTS
-// One group takes one batch of a list and hands on those of its patches that may be seen, in order, and the draw of them.
-// Nothing is counted across batches before the draws, so no order depends on which group ran first.
+// variants: patches=PATCHES leaves=LEAVES cut=CUT
+// Hands on what may be seen to the draw lists (DFAS section 6.1). PATCHES and LEAVES: one thread a patch; patches of more
+// segments than the tessellator makes go to the CUT variant, whose groups hand on the pieces of one patch each.
 #extension GL_GOOGLE_include_directive : require
-#include "shared/tables.glsl"
+#include "shared/append.glsl"
 #include "shared/control_points.glsl"
-#include "shared/visibility.glsl"
-layout(local_size_x_id = 1) in;
+#include "shared/entry.glsl"
+#include "shared/factors.glsl"
 layout(local_size_x = 64) in;
 
-// The most patches of a batch.
-layout(constant_id = 0) const uint MAX_BATCH = 256;
-const uint SEEN_WORDS = (MAX_BATCH + 31) / 32;
-
-// VkDrawIndirectCommand: a vertex is a patch.
-struct DrawArguments {
-    uint vertex_count;
-    uint instance_count;
-    uint first_vertex;
-    uint first_instance;
-};
-
-// Patches of one kind, by level.
-struct EmitCounts {
-    uint levels[LEVEL_COUNT];
-};
-
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SourceDraws { DrawArguments v[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer VisibleDraws { DrawArguments v[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer VisibleList { uint v[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer EmitLevels { EmitLevel v[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer EmitCountsOfKind { EmitCounts v; };
+// Vertices that one draw should generate on a software driver; 0: all patches are one draw.
+layout(constant_id = 1) const uint BATCH_VERTICES = 0;
+// Whether frames may cull at all: without it the tests are not even compiled.
+layout(constant_id = 2) const bool CULL = true;
 
 layout(push_constant, scalar) uniform EmitPush {
-    Indices list;              // patches of the kind, as indices into the table
-    VisibleList visible;       // those that may be seen, each batch's from its own first place on
-    Points points;             // control points; limit points for filling quads
-    RegularPatches patches;    // table of patches; filling quads for their variants
-    SourceDraws draws;         // the batches of the list
-    VisibleDraws visible_draws;
-    EmitLevels levels;
-    EmitCountsOfKind counts;   // visible patches, added to
-    EmitView view;
-    uint batch_count;
+    SceneTables scene;
+    uint list; // LIST_BASE, whose entries are chunks, LIST_PATCHES, LIST_LEAVES or LIST_CUT
 } push;
 
-shared uint seen[SEEN_WORDS];
-shared uint level_counts[LEVEL_COUNT];
+shared uint seen[2];
+shared uint most_vertices;
+shared uint first_entry;
+shared uint first_draw;
 
-#if defined(BSPLINE)
-PatchInfo info_of(uint place)
+// Appends the entries of those threads that have one, in their order. All threads of the group must call it.
+void append_entries(uint draw, bool is_seen, DrawEntry entry, uint vertices)
 {
-    return push.patches.v[place].info;
-}
-
-bool is_unseen(uint place)
-{
-    PatchInfo info = info_of(place);
-    vec3 points[16];
-    [[unroll]] for (int i = 0; i < 16; ++i) {
-        points[i] = stored_point(push.patches, push.points, place, i);
+    uint thread = gl_LocalInvocationID.x;
+    barrier();
+    if (thread < 2u) {
+        seen[thread] = 0u;
     }
-    reflect_points(points, patch_boundary(info));
-    bool is_uneven = (patch_transition(info) | patch_leaf(info)) != 0u;
-    // The tangents of a patch with a semi-sharp crease are not those of its control points: it is always drawn.
-    bool is_creased = push.patches.v[place].sharpness != 0.0;
-    return !is_creased && is_patch_unseen(points, push.view, push.levels.v[patch_level(info)], is_uneven);
-}
-#else
-#if defined(MIDPOINTS)
-#define POINT_COUNT 9
-#define QUAD_COUNT 4
-#define QUADS FillingQuadsMidpoints
-// The quads between corners 0 to 3, middles of edges 4 to 7 and the centre 8.
-const uvec4 CORNERS_OF[4] = uvec4[4](uvec4(0, 4, 8, 7), uvec4(4, 1, 5, 8), uvec4(8, 5, 2, 6), uvec4(7, 8, 6, 3));
-#else
-#define POINT_COUNT 4
-#define QUAD_COUNT 1
-#define QUADS FillingQuads
-const uvec4 CORNERS_OF[1] = uvec4[1](uvec4(0, 1, 2, 3));
-#endif
-
-PatchInfo info_of(uint place)
-{
-    return QUADS(push.patches).v[place].info;
-}
-
-bool is_unseen(uint place)
-{
-    vec3 p[POINT_COUNT];
-    [[unroll]] for (int i = 0; i < POINT_COUNT; ++i) {
-        uint limit = QUADS(push.patches).v[place].corners[min(i, 3)];
-#if defined(MIDPOINTS)
-        if (i > 3) {
-            limit = QUADS(push.patches).v[place].midpoints[max(i, 4) - 4];
+    if (thread == 0u) {
+        most_vertices = 1u;
+    }
+    barrier();
+    if (is_seen) {
+        atomicOr(seen[thread >> 5], 1u << (thread & 31u));
+        atomicMax(most_vertices, vertices);
+    }
+    barrier();
+    uint count = bitCount(seen[0]) + bitCount(seen[1]);
+    if (count == 0u) {
+        return;
+    }
+    uint batch = BATCH_VERTICES == 0u ? CHUNK : clamp(BATCH_VERTICES / most_vertices, 1u, CHUNK);
+    uint draws = BATCH_VERTICES == 0u ? 0u : (count + batch - 1u) / batch;
+    DrawHeads heads = push.scene.v.draw_heads;
+    if (thread == 0u) {
+        first_entry = atomicAdd(heads.v[draw].count, count);
+        first_draw = draws == 0u ? 0u : atomicAdd(heads.v[draw].draw_count, draws);
+    }
+    barrier();
+    uint capacity = heads.v[draw].capacity;
+    if (is_seen) {
+        uint rank = bitCount(seen[thread >> 5] & ((1u << (thread & 31u)) - 1u)) + (thread >= 32u ? bitCount(seen[0]) : 0u);
+        if (first_entry + rank < capacity) {
+            push.scene.v.entries.v[heads.v[draw].first + first_entry + rank] = entry;
         }
-#endif
-        p[i] = LimitPoints(push.points).v[limit].position;
     }
+    for (uint i = thread; i < draws; i += CHUNK) {
+        if (first_draw + i < heads.v[draw].draw_capacity) {
+            uint begin = min(first_entry + i * batch, capacity);
+            uint end = min(min(first_entry + count, first_entry + (i + 1u) * batch), capacity);
+            push.scene.v.draws.v[heads.v[draw].first_draw + first_draw + i] = DrawArguments(end - begin, 1u, begin, 0u);
+        }
+    }
+}
+
+bool is_culled(FrameInput frame) { return CULL && frame.view.cull != 0u; }
+
+// Whether triangles of an object that show their back are not seen.
+bool culls_back(FrameInput frame, Object object)
+{
+    return frame.view.cull == 2u && (object.flags & (OBJECT_HIDES_BACKS | OBJECT_MIRRORED)) == OBJECT_HIDES_BACKS;
+}
+
+bool is_split(Object object, uint edge)
+{
+    uint bit = object.first_edge + edge;
+    return edge != NONE && (push.scene.v.split_edges.v[bit >> 5] >> (bit & 31u) & 1u) != 0u;
+}
+
+#if defined(LEAVES)
+uint split_edges_of(Object object, uint place)
+{
+    uint result = 0u;
+    for (uint i = 0; i < 4; ++i) {
+        result |= is_split(object, push.scene.v.irregular.v[place].edges[i]) ? 1u << i : 0u;
+    }
+    return result;
+}
+
+// Whether nothing can be seen of the triangles of a quad, of which 8 points are given: corners, and the middles of split edges.
+bool is_unseen(vec3 p[8], uint split_edges, FrameInput frame, Object object)
+{
+    EmitView view = frame.view;
     float largest_offset = 0.0;
     float largest = 0.0;
-    [[unroll]] for (int i = 0; i < POINT_COUNT; ++i) {
-        precise vec3 offset = p[i] - push.view.eye;
+    [[unroll]] for (int i = 0; i < 8; ++i) {
+        precise vec3 offset = p[i] - view.eye;
         largest_offset = max(largest_offset, largest_component(offset));
         largest = max(largest, largest_component(p[i]));
     }
-    Scale scale = scale_of(push.view, 1.0, largest_offset, largest);
+    Scale scale = scale_of(view, 1.0, largest_offset, largest);
+    precise float margin = object.displacement * scale.factor;
     uint planes = 31u;
-    [[unroll]] for (int i = 0; i < POINT_COUNT; ++i) {
+    [[unroll]] for (int i = 0; i < 8; ++i) {
         precise vec3 offset = p[i] * scale.factor - scale.eye;
         p[i] = offset;
-        planes &= outside_planes(offset, push.view, scale);
+        planes &= outside_planes(offset, view, scale, margin);
     }
-    precise float error = scale.rounding + CUBE_DIAGONAL * push.view.snap;
-    bool is_turned = push.view.cull_back != 0u;
-    [[unroll]] for (int i = 0; i < QUAD_COUNT; ++i) {
-        uvec4 c = CORNERS_OF[i];
-        is_turned = is_turned && is_quad_turned(p[c.x], p[c.y], p[c.z], p[c.w], error, scale.eye_rounding);
+    precise float error = scale.rounding + CUBE_DIAGONAL * view.snap;
+    if (!culls_back(frame, object) || object.displacement != 0.0) {
+        return planes != 0u;
+    }
+    if (split_edges == 0u) {
+        return planes != 0u || is_quad_turned(p[0], p[1], p[2], p[3], error, scale.eye_rounding);
+    }
+    // The fan's triangles. Middles that are not there lie at a corner: their triangles have no area, and show neither side.
+    uint fan = uint(findLSB(split_edges));
+    bool is_turned = true;
+    for (uint i = 0; i < 4; ++i) {
+        uint next = (i + 1u) & 3u;
+        bool is_there = (split_edges >> i & 1u) != 0u;
+        if (i == fan) {
+            continue;
+        }
+        if (is_there) {
+            is_turned = is_turned && is_triangle_turned(p[4u + fan], p[i], p[4u + i], error, scale.eye_rounding)
+                && is_triangle_turned(p[4u + fan], p[4u + i], p[next], error, scale.eye_rounding);
+        } else {
+            is_turned = is_turned && is_triangle_turned(p[4u + fan], p[i], p[next], error, scale.eye_rounding);
+        }
     }
     return planes != 0u || is_turned;
 }
-#endif
+
+shared uint level_counts[LEVEL_COUNT];
 
 void main()
 {
-    uint batch = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    if (batch >= push.batch_count) {
-        return;
-    }
-    uint thread = gl_LocalInvocationID.x;
-    for (uint i = thread; i < SEEN_WORDS; i += gl_WorkGroupSize.x) {
-        seen[i] = 0;
-    }
-    for (uint i = thread; i < LEVEL_COUNT; i += gl_WorkGroupSize.x) {
-        level_counts[i] = 0;
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    uint thread = group * CHUNK + gl_LocalInvocationID.x;
+    for (uint i = gl_LocalInvocationID.x; i < LEVEL_COUNT; i += CHUNK) {
+        level_counts[i] = 0u;
     }
     barrier();
-    DrawArguments draw = push.draws.v[batch];
-    uint count = min(draw.vertex_count, MAX_BATCH);
-    // Loops, not branches: a software driver runs the body of a branch that no thread takes, but not that of a loop.
-    for (uint i = thread; i < count; i += gl_WorkGroupSize.x) {
-        uint place = push.list.v[draw.first_vertex + i];
-        if (!is_unseen(place)) {
-            atomicOr(seen[i / 32], 1u << (i % 32));
-            atomicAdd(level_counts[patch_level(info_of(place))], 1);
+    bool is_seen = thread < list_length(push.scene.v.heads, LIST_LEAVES);
+    DrawEntry entry;
+    if (is_seen) {
+        ListItem item = push.scene.v.leaf_items.v[thread];
+        Object object = push.scene.v.objects.v[item.object];
+        FrameInput frame = push.scene.v.frame_input.v;
+        uint split_edges = split_edges_of(object, item.place);
+        vec3 points[8];
+        for (uint i = 0; i < 4; ++i) {
+            uint corner = push.scene.v.irregular.v[item.place].limits[i];
+            points[i] = to_world(object, push.scene.v.limits.v[corner].position);
+            uint middle = (split_edges >> i & 1u) != 0u ? push.scene.v.irregular.v[item.place].midpoints[i] : corner;
+            points[4u + i] = to_world(object, push.scene.v.limits.v[middle].position);
+        }
+        is_seen = !is_culled(frame) || !is_unseen(points, split_edges, frame, object);
+        // The inner level of an uneven quad is 2: its middle makes a triangle with each segment of its edges.
+        uint triangles = split_edges == 0u ? 2u : 4u + bitCount(split_edges);
+        entry = DrawEntry(item.place, item.object, entry_flags(split_edges, 0u, uvec2(0u)), triangles, vec4(0.0), vec4(0.0), vec2(0.0));
+        if (is_seen) {
+            atomicAdd(level_counts[patch_level(push.scene.v.irregular.v[item.place].info)], 1u);
         }
     }
+    append_entries(DRAW_FILLING, is_seen, entry, 8u);
     barrier();
-    for (uint i = thread; i < count; i += gl_WorkGroupSize.x) {
-        uint word = seen[i / 32];
-        uint rank = bitCount(word & ((1u << (i % 32)) - 1));
-        for (uint before = 0; before < i / 32; ++before) {
-            rank += bitCount(seen[before]);
-        }
-        if ((word >> (i % 32) & 1u) != 0u) {
-            push.visible.v[draw.first_vertex + rank] = push.list.v[draw.first_vertex + i];
-        }
-    }
-    if (thread == 0) {
-        draw.vertex_count = 0;
-        for (uint word = 0; word < SEEN_WORDS; ++word) {
-            draw.vertex_count += bitCount(seen[word]);
-        }
-        push.visible_draws.v[batch] = draw;
-    }
-    for (uint i = thread; i < LEVEL_COUNT; i += gl_WorkGroupSize.x) {
-        if (level_counts[i] != 0) {
-            atomicAdd(push.counts.v.levels[i], level_counts[i]);
+    for (uint i = gl_LocalInvocationID.x; i < LEVEL_COUNT; i += CHUNK) {
+        if (level_counts[i] != 0u) {
+            atomicAdd(push.scene.v.counts.v.filling[i], level_counts[i]);
         }
     }
 }
+#else
+uint split_edges_of(Object object, uint place)
+{
+    uint result = 0u;
+    for (uint i = 0; i < 4; ++i) {
+        result |= is_split(object, push.scene.v.patches.v[place].edges[i]) ? 1u << i : 0u;
+    }
+    return result;
+}
+
+void control_points(Object object, uint place, PatchInfo info, out vec3 points[16])
+{
+    [[unroll]] for (int i = 0; i < 16; ++i) {
+        points[i] = to_world(object, stored_point(push.scene.v.patches, push.scene.v.points, place, i));
+    }
+    reflect_points(points, patch_boundary(info));
+}
+#endif
+
+#if defined(PATCHES)
+shared uint level_counts[2 * LEVEL_COUNT];
+shared uint cut_patch_count;
+shared uint first_cut;
+
+// The patch that a thread is for; false for none.
+bool patch_of(uint group, out ListItem item)
+{
+    item = ListItem(0u, 0u);
+    if (push.list == LIST_BASE) {
+        if (group >= push.scene.v.heads.v[LIST_BASE].count) {
+            return false;
+        }
+        item = push.scene.v.chunks.v[push.scene.v.chunk_first[3] + group];
+        Object object = push.scene.v.objects.v[item.object];
+        uint place = item.place + gl_LocalInvocationID.x;
+        item.place = object.first_patch + place;
+        return place < object.patch_count;
+    }
+    uint thread = group * CHUNK + gl_LocalInvocationID.x;
+    if (thread >= list_length(push.scene.v.heads, LIST_PATCHES)) {
+        return false;
+    }
+    item = push.scene.v.patch_items.v[thread];
+    return true;
+}
+
+void main()
+{
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    for (uint i = gl_LocalInvocationID.x; i < 2u * LEVEL_COUNT; i += CHUNK) {
+        level_counts[i] = 0u;
+    }
+    if (gl_LocalInvocationID.x == 0u) {
+        cut_patch_count = 0u;
+    }
+    barrier();
+    ListItem item;
+    bool is_seen = patch_of(group, item);
+    uint pieces = 0u;
+    uint vertices = 1u;
+    uint split_edges = 0u;
+    uint cut_place = 0u;
+    DrawEntry entry;
+    if (is_seen) {
+        Object object = push.scene.v.objects.v[item.object];
+        FrameInput frame = push.scene.v.frame_input.v;
+        PatchInfo info = push.scene.v.patches.v[item.place].info;
+        split_edges = split_edges_of(object, item.place);
+        PatchFactors factors = patch_factors(face_density(push.scene, object, info.ptex_face), info, split_edges);
+        pieces = cut_count(factors);
+        // The tangents of a patch with a semi-sharp crease are not those of its control points: it is always drawn.
+        if (is_culled(frame) && push.scene.v.patches.v[item.place].sharpness == 0.0) {
+            vec3 points[16];
+            vec3 bezier[16];
+            control_points(object, item.place, info, points);
+            bezier_patch(points, bezier);
+            bool cull_back = culls_back(frame, object) && pieces == 1u;
+            is_seen = !is_patch_unseen(bezier, frame.view, grain_of(factors), cull_back, object.displacement);
+        }
+        uvec2 inner = uvec2(factors.inner_counts);
+        vertices = (inner.x + 1u) * (inner.y + 1u);
+        entry = DrawEntry(item.place, item.object, entry_flags(split_edges, 0u, uvec2(0u)),
+                          triangle_count(uvec4(factors.counts), inner), factors.low, factors.high, factors.inner);
+        if (is_seen) {
+            uint level = patch_level(info);
+            atomicAdd(level_counts[split_edges != 0u ? LEVEL_COUNT + level : level], 1u);
+            if (pieces > 1u) {
+                cut_place = atomicAdd(cut_patch_count, 1u);
+            }
+        }
+    }
+    append_entries(DRAW_REGULAR, is_seen && pieces == 1u && split_edges == 0u, entry, vertices);
+    append_entries(DRAW_TRANSITION, is_seen && pieces == 1u && split_edges != 0u, entry, vertices);
+    barrier();
+    if (gl_LocalInvocationID.x == 0u && cut_patch_count != 0u) {
+        // A group a patch.
+        first_cut = atomicAdd(push.scene.v.heads.v[LIST_CUT].count, cut_patch_count);
+        uint groups = min(first_cut + cut_patch_count, push.scene.v.heads.v[LIST_CUT].capacity);
+        atomicMax(push.scene.v.heads.v[LIST_CUT].groups_x, min(groups, 65535u));
+        atomicMax(push.scene.v.heads.v[LIST_CUT].groups_y, (groups + 65534u) / 65535u);
+    }
+    barrier();
+    if (is_seen && pieces > 1u && first_cut + cut_place < push.scene.v.heads.v[LIST_CUT].capacity) {
+        push.scene.v.cut_items.v[first_cut + cut_place] = item;
+    }
+    for (uint i = gl_LocalInvocationID.x; i < LEVEL_COUNT; i += CHUNK) {
+        if (level_counts[i] != 0u) {
+            atomicAdd(push.scene.v.counts.v.regular[i], level_counts[i]);
+        }
+        if (level_counts[LEVEL_COUNT + i] != 0u) {
+            atomicAdd(push.scene.v.counts.v.transition[i], level_counts[LEVEL_COUNT + i]);
+        }
+    }
+}
+#endif
+
+#if defined(CUT)
+void main()
+{
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (group >= list_length(push.scene.v.heads, LIST_CUT)) {
+        return;
+    }
+    ListItem item = push.scene.v.cut_items.v[group];
+    Object object = push.scene.v.objects.v[item.object];
+    FrameInput frame = push.scene.v.frame_input.v;
+    PatchInfo info = push.scene.v.patches.v[item.place].info;
+    uint split_edges = split_edges_of(object, item.place);
+    PatchFactors factors = patch_factors(face_density(push.scene, object, info.ptex_face), info, split_edges);
+    uint pieces = cut_count(factors);
+    bool is_tested = is_culled(frame) && push.scene.v.patches.v[item.place].sharpness == 0.0;
+    vec3 points[16];
+    vec3 whole[16];
+    control_points(object, item.place, info, points);
+    bezier_patch(points, whole);
+    // All threads go round together: they append together.
+    for (uint first = 0u; first < pieces * pieces; first += CHUNK) {
+        uint i = first + gl_LocalInvocationID.x;
+        uvec2 piece = uvec2(i % pieces, i / pieces);
+        PieceFactors own = piece_factors(factors, pieces, piece);
+        bool is_seen = i < pieces * pieces;
+        if (is_seen && is_tested) {
+            vec3 bezier[16] = whole;
+            vec2 low;
+            vec2 high;
+            piece_bounds(factors, own, pieces, piece, low, high);
+            bezier_part(bezier, low, high);
+            is_seen = !is_patch_unseen(bezier, frame.view, Grain(1.0, 0.0, false), false, object.displacement);
+        }
+        DrawEntry entry = DrawEntry(item.place, item.object, entry_flags(split_edges, pieces, piece),
+                                    triangle_count(own.counts, own.inner), factors.low, factors.high, factors.inner);
+        append_entries(DRAW_CUT, is_seen, entry, (own.inner.x + 1u) * (own.inner.y + 1u));
+    }
+}
+#endif

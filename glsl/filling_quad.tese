@@ -8,15 +8,18 @@ layout(quads, equal_spacing, ccw) in;
 layout(location = 0) in vec3 limit_position[];
 layout(location = 1) in vec3 limit_normal[];
 layout(location = 2) patch in uvec4 patch_words;
+layout(location = 3) patch in uint fan;
 
-// Which limit point lies at column i, row j of the 3 x 3: corners 0 to 3, edges 4 to 7, centre 8.
-const uint PLACES[9] = uint[9](0, 4, 1, 7, 8, 5, 3, 6, 2);
+// Which limit point lies at column i, row j of the 3 x 3. There is none in the middle: it becomes the fan's point, so that the
+// triangles around it are those of a fan, and two without area.
+const uint PLACES[9] = uint[9](0, 4, 1, 7, 0, 5, 3, 6, 2);
+const vec2 UVS[8] = vec2[8](vec2(0.0, 0.0), vec2(1.0, 0.0), vec2(1.0, 1.0), vec2(0.0, 1.0), vec2(0.5, 0.0), vec2(1.0, 0.5),
+                            vec2(0.5, 1.0), vec2(0.0, 0.5));
 
 void main()
 {
-    vec2 uv = gl_TessCoord.xy;
-    uvec2 grid = uvec2(round(2.0 * uv));
-    uint place = PLACES[3 * grid.y + grid.x];
-    put_surface_point(limit_position[place], limit_normal[place], 0.5 * vec2(grid),
-                      PatchInfo(patch_words.x, patch_words.y, patch_words.z), patch_words.w, KIND_FILLING);
+    uvec2 grid = uvec2(round(2.0 * gl_TessCoord.xy));
+    uint place = grid == uvec2(1u) ? fan : PLACES[3 * grid.y + grid.x];
+    put_surface_point(limit_position[place], limit_normal[place], UVS[place],
+                      PatchInfo(patch_words.x, patch_words.y, patch_words.z), patch_words.w, KIND_FILLING, 1.0);
 }

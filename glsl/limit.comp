@@ -1,27 +1,28 @@
 #version 460
-// One thread makes one limit point: position and normal by limit masks (FAS section 4.1, Halstead et al. 1993).
+// One thread makes one limit point of those in use: position and normal by limit masks (FAS section 4.1, Halstead et al. 1993).
 #extension GL_GOOGLE_include_directive : require
-#include "shared/tables.glsl"
-#include "shared/bspline.glsl"
+#include "shared/scene.glsl"
 layout(local_size_x = 64) in;
 #include "shared/dispatch.glsl"
 
-layout(push_constant, scalar) uniform LimitPush {
+layout(push_constant, scalar) uniform Push {
     Points points;
     LimitPoints limits;
     StencilRows rows;
     Indices indices;
     LimitWeights weights; // of the position and of two tangents
-    uint row_count;
+    Indices in_use; // limit points
+    ListHeads head; // their number
 } push;
 
 void main()
 {
     uint thread = thread_index();
-    if (thread >= push.row_count) {
+    if (thread >= push.head.v[0].count) {
         return;
     }
-    StencilRow row = push.rows.v[thread];
+    uint limit_index = push.in_use.v[thread];
+    StencilRow row = push.rows.v[limit_index];
     precise vec3 origin = push.points.v[push.indices.v[row.first_index]];
     precise vec3 position = vec3(0.0);
     precise vec3 tangent0 = vec3(0.0);
@@ -38,5 +39,5 @@ void main()
     LimitPoint result;
     result.position = position;
     result.normal = normal;
-    push.limits.v[thread] = result;
+    push.limits.v[limit_index] = result;
 }

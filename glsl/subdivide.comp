@@ -1,27 +1,27 @@
 #version 460
-// One thread makes one point of a level from points of the levels before (FAS section 3.2).
+// One thread makes one point of a level from points of the levels before (FAS section 3.2), of those in use.
 #extension GL_GOOGLE_include_directive : require
-#include "shared/tables.glsl"
+#include "shared/scene.glsl"
 layout(local_size_x = 64) in;
 #include "shared/dispatch.glsl"
 
-layout(push_constant, scalar) uniform SubdividePush {
+layout(push_constant, scalar) uniform Push {
     Points points;
     StencilRows rows;
     Indices indices;
     Weights weights;
-    uint first_row;
-    uint row_count;
+    Indices in_use;   // rows
+    ListHeads head;   // their number
     uint first_point; // the place of row 0's point
 } push;
 
 void main()
 {
     uint thread = thread_index();
-    if (thread >= push.row_count) {
+    if (thread >= push.head.v[0].count) {
         return;
     }
-    uint row_index = push.first_row + thread;
+    uint row_index = push.in_use.v[thread];
     StencilRow row = push.rows.v[row_index];
     // Relative to the row's origin: differences of neighbours keep their digits.
     precise vec3 origin = push.points.v[push.indices.v[row.first_index]];

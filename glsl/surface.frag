@@ -24,7 +24,9 @@ void main()
     vec3 to_eye = direction * -inversesqrt(dot(direction, direction));
     // A point without a tangent plane has the normal 0; the bound keeps its pixels finite.
     vec3 normal = in_normal * inversesqrt(max(dot(in_normal, in_normal), 1e-20));
-    vec3 facing = gl_FrontFacing ? normal : -normal;
+    // Mirrored objects have normals of MIRRORED_LENGTH, and triangles that run the other way round.
+    bool is_mirrored = dot(in_normal, in_normal) > 1e6;
+    vec3 facing = gl_FrontFacing != is_mirrored ? normal : -normal;
 #if defined(LAYERS)
     out_color = vec4(view_color(VIEW, facing, to_eye, in_uv, in_ids, in_factor), 1.0);
     float depth = -(push.frame.v.world_to_camera * vec4(in_position, 1.0)).z;

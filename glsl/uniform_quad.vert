@@ -8,10 +8,10 @@ const uint CORNERS[6] = uint[6](0, 1, 2, 0, 2, 3);
 
 void main()
 {
-    uint quad = push.list.v[gl_VertexIndex / 6];
+    uint quad = gl_VertexIndex / 6;
     uint corner = CORNERS[gl_VertexIndex % 6];
     FillingQuads quads = FillingQuads(push.patches);
     LimitPoint limit = LimitPoints(push.points).v[quads.v[quad].corners[corner]];
     vec2 uv = vec2(corner == 1 || corner == 2, corner >= 2);
-    put_surface_point(limit.position, limit.normal, uv, quads.v[quad].info, push.first_patch_id + quad, KIND_FILLING);
+    put_surface_point(limit.position, limit.normal, uv, quads.v[quad].info, push.first_patch_id + quad, KIND_FILLING, 1.0);
 }

@@ -48,12 +48,19 @@ precise vec3 scaled(vec3 a)
     return result;
 }
 
+// A vector of length 1, or 0.
+precise vec3 unit_vector(vec3 a)
+{
+    precise vec3 vector = scaled(a);
+    precise float square = (vector.x * vector.x + vector.y * vector.y) + vector.z * vector.z;
+    precise vec3 result = vector / sqrt(max(square, 1.17549435e-38));
+    return result;
+}
+
 // A unit vector along a x b, or 0 where they span no plane.
 precise vec3 unit_normal(vec3 a, vec3 b)
 {
-    precise vec3 normal = scaled(precise_cross(scaled(a), scaled(b)));
-    precise float square = (normal.x * normal.x + normal.y * normal.y) + normal.z * normal.z;
-    precise vec3 result = normal / sqrt(max(square, 1.17549435e-38));
+    precise vec3 result = unit_vector(precise_cross(scaled(a), scaled(b)));
     return result;
 }
 #endif

@@ -1,14 +1,11 @@
 // What a frame's draws share.
 #ifndef PLANISH_FRAME
 #define PLANISH_FRAME
-#include "tables.glsl"
-
-// One for each level, and one more for the finer side of an edge.
-const uint FACTOR_COUNT = LEVEL_COUNT + 1;
+#include "scene.glsl"
 
 struct FrameData {
+    SceneTables scene;
     mat4 world_to_camera; // right-handed, looking down -z
-    float factors[FACTOR_COUNT]; // tess factor of each level: max(1, t / 2^k), held where two halves would exceed 64
 };
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Frame { FrameData v; };
@@ -17,9 +14,9 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Fra
 // hardware keeps it in scalar registers, and a software driver would load it lane by lane.
 layout(push_constant, scalar) uniform DrawPush {
     mat4 view_projection; // world to clip space
-    Indices list;         // patches to draw, as indices into the table
+    DrawEntries list;     // patches to draw
     Points points;        // control points; limit points for filling quads
-    RegularPatches patches; // table of patches; filling quads for their pass
+    RegularPatches patches; // table of patches; irregular faces, or quads, for filling quads
     Frame frame;
     vec3 ray_dx;          // change of the view ray, at depth 1, from one pixel to the next, in world space
     vec3 ray_dy;          // and from one line to the next

@@ -5,6 +5,7 @@
 #ifndef PLANISH_SURFACE
 #define PLANISH_SURFACE
 #include "frame.glsl"
+#include "entry.glsl"
 
 const uint KIND_REGULAR = 0;
 const uint KIND_TRANSITION = 1;
@@ -40,19 +41,28 @@ uint shown_kind(PatchInfo info, uint kind)
 }
 #endif
 
-void put_surface_point(vec3 position, vec3 normal, vec2 uv, PatchInfo info, uint patch_id, uint kind)
+// How long the normals of mirrored objects are: the shading of their triangles, which show their backs outside, knows them by
+// it, as every value more that is interpolated costs triangle set-up.
+const float MIRRORED_LENGTH = 1048576.0;
+
+// `patch_id`: the patch's number, with PATCH_MIRRORED.
+void put_surface_point(vec3 position, vec3 normal, vec2 uv, PatchInfo info, uint patch_id, uint kind, float factor)
 {
-    out_normal = normal;
+    bool is_mirrored = (patch_id & PATCH_MIRRORED) != 0u;
     gl_Position = push.view_projection * vec4(position, 1.0);
 #if defined(DUMP)
+    out_normal = is_mirrored ? -normal : normal;
     out_position = position;
     out_uv = ptex_uv(info, uv);
     out_face = uvec2(info.ptex_face, patch_level(info) | kind << 8);
-#elif defined(LAYERS)
+#else
+    out_normal = is_mirrored ? -MIRRORED_LENGTH * normal : normal;
+#if defined(LAYERS)
     out_position = position;
     out_uv = ptex_uv(info, uv);
-    out_ids = uvec4(info.ptex_face, patch_id, patch_level(info), shown_kind(info, kind));
-    out_factor = push.frame.v.factors[patch_level(info)];
+    out_ids = uvec4(info.ptex_face, patch_id & ~PATCH_MIRRORED, patch_level(info), shown_kind(info, kind));
+    out_factor = factor;
+#endif
 #endif
 }
 #endif

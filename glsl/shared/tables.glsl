@@ -1,4 +1,4 @@
-// Tables of a mesh, as the subdiv crate builds them. Scalar layout, read through addresses.
+// Tables of meshes, as the subdiv crate builds them. Scalar layout, read through addresses.
 #ifndef PLANISH_TABLES
 #define PLANISH_TABLES
 #extension GL_EXT_buffer_reference : require
@@ -6,6 +6,8 @@
 
 // Levels that a patch can have.
 const uint LEVEL_COUNT = 16;
+// "There is none", for any index.
+const uint NONE = 0xffffffffu;
 
 // `count` indices from `first_index` on, weighted by as many weights from `first_weight` on.
 struct StencilRow {
@@ -28,10 +30,30 @@ struct PatchInfo {
 };
 
 // 16 control points, row by row; rows that the boundary mask names are reflections. Sharpness of the crease edge, or 0.
+// Edges that may be split, because an irregular face lies across, have a number.
 struct RegularPatch {
     uint points[16];
     PatchInfo info;
     float sharpness;
+    uint edges[4];
+};
+
+// A child of an irregular face is one itself if this bit is set, else a regular patch.
+const uint IRREGULAR_CHILD = 0x80000000u;
+const uint FACE_FORCED = 1;
+const uint FACE_HIDDEN = 2;
+// Bits 2-5: the limit point of the corner is made of points one level down.
+const uint FACE_STAR_LIMITS_SHIFT = 2;
+
+// An irregular face of any level: refined in some frames, a filling quad in others.
+struct IrregularFace {
+    PatchInfo info;
+    uint children[4];
+    uint edges[4];     // numbers of its edges among those that can be split
+    uint stars[4];     // of its corners: the points one level down around them
+    uint limits[4];    // limit points at its corners
+    uint midpoints[4]; // and at the middles of its edges
+    uint flags;
 };
 
 // Limit points at (0,0), (1,0), (1,1), (0,1).
@@ -40,17 +62,14 @@ struct FillingQuad {
     PatchInfo info;
 };
 
-// The same with those at the middles of its edges and at its centre.
-struct FillingQuadMidpoints {
-    uint corners[4];
-    uint midpoints[5];
-    PatchInfo info;
-};
-
 struct LimitPoint {
     vec3 position;
     vec3 normal;
 };
+
+// Slots of the densities at the corners of a Ptex face, from the object's first on. That of corner 2 has this bit in the parts
+// of a face of other than four sides: it is the face's middle, corners 1 and 3 are its next and previous vertex.
+const uint PART_OF_FACE = 0x80000000u;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Points { vec3 v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LimitPoints { LimitPoint v[]; };
@@ -60,8 +79,9 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Edi
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Weights { float v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer LimitWeights { vec3 v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RegularPatches { RegularPatch v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer IrregularFaces { IrregularFace v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FillingQuads { FillingQuad v[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FillingQuadsMidpoints { FillingQuadMidpoints v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer PtexFaces { uvec4 v[]; };
 
 uint patch_depth(PatchInfo info) { return bitfieldExtract(info.flags, 0, 5); }
 uint patch_level(PatchInfo info) { return bitfieldExtract(info.flags, 5, 5); }
@@ -70,10 +90,13 @@ uint patch_transition(PatchInfo info) { return bitfieldExtract(info.flags, 14, 4
 uint patch_leaf(PatchInfo info) { return bitfieldExtract(info.flags, 18, 4); }
 uint patch_crease(PatchInfo info) { return bitfieldExtract(info.flags, 22, 4); }
 
+// 2^-k, exactly: exp2 need not be.
+float halvings(uint k) { return uintBitsToFloat((127u - k) << 23); }
+
 // (u, v) of a patch's own domain in the domain of its Ptex face.
 vec2 ptex_uv(PatchInfo info, vec2 uv)
 {
     vec2 corner = vec2(info.corner & 0xffffu, info.corner >> 16);
-    return (corner + uv) * exp2(-float(patch_depth(info)));
+    return (corner + uv) * halvings(patch_depth(info));
 }
 #endif

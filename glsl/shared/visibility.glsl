@@ -26,15 +26,15 @@ struct EmitView {
     vec3 clip_w;    // and w = dot(clip_w, d), its depth
     float near;     // depth of the near plane
     float snap;     // how far the rasterizer's grid may move a vertex, over its distance from the eye
-    uint cull_back; // 1 where triangles that show their back are left out
+    uint cull; // 0: nothing is left out; 1: what lies outside of the view; 2: and triangles that show their back
 };
 
-// How patches of a level are tessellated, in their own parameters; crates/render/src/tessellation.rs makes it.
-struct EmitLevel {
-    float grain;        // 1 over the shortest side of a triangle
-    float uneven_grain; // the same for a patch with an edge that has other points than its neighbouring row: at least 1
-                        // over a triangle's area times the longest side
-    float skew;         // how much more such a triangle turns along with the row: x in visibility.rs
+// How a patch is tessellated, in its own parameters; factors.glsl makes it.
+struct Grain {
+    float grain;    // 1 over the shortest side of a triangle; of an uneven patch, one with an edge that has other points than the
+                    // row beside it, at least 1 over a triangle's area times the longest side
+    float skew;     // how much more a triangle of such an edge turns along with the row: x in visibility.rs
+    bool is_uneven;
 };
 
 precise float precise_dot(vec3 a, vec3 b)
@@ -75,12 +75,13 @@ Scale scale_of(EmitView view, float unit, float largest_offset, float largest)
 }
 
 // The planes that bound the view and that a point at `d` from the eye lies outside of, one bit each.
-uint outside_planes(vec3 d, EmitView view, Scale scale)
+// `margin` is how far what is tested may reach beyond its points, scaled.
+uint outside_planes(vec3 d, EmitView view, Scale scale, float margin)
 {
     precise float x = precise_dot(view.clip_x, d);
     precise float y = precise_dot(view.clip_y, d);
     precise float w = precise_dot(view.clip_w, d);
-    precise float noise = (scale.rounding + scale.eye_rounding) + ROUNDING;
+    precise float noise = ((scale.rounding + scale.eye_rounding) + ROUNDING) + margin;
     precise float depth_noise = sum_of_components(view.clip_w) * noise;
     precise float x_noise = -(sum_of_components(view.clip_x) * noise + depth_noise);
     precise float y_noise = -(sum_of_components(view.clip_y) * noise + depth_noise);
@@ -91,6 +92,16 @@ uint outside_planes(vec3 d, EmitView view, Scale scale)
     precise float beyond = w - scale.near;
     return (left < x_noise ? 1u : 0u) | (right < x_noise ? 2u : 0u) | (bottom < y_noise ? 4u : 0u)
         | (top < y_noise ? 8u : 0u) | (beyond < -depth_noise ? 16u : 0u);
+}
+
+// The planes that a point and all within `margin` of it lie outside of.
+uint point_outside_planes(vec3 p, EmitView view, float margin)
+{
+    precise vec3 offset = p - view.eye;
+    Scale scale = scale_of(view, 1.0, largest_component(offset), largest_component(p));
+    precise vec3 d = p * scale.factor - scale.eye;
+    precise float scaled_margin = margin * scale.factor;
+    return outside_planes(d, view, scale, scaled_margin);
 }
 
 // The points of a cubic Bezier curve, times 6, from those of a B-spline.
@@ -139,21 +150,19 @@ TangentBounds tangents_of(vec3 b[16], int step, int row, out vec3 tangents[12])
 
 // How much of their product the triangles of a tessellation may lose against the tangents: x in visibility.rs. `error` is
 // how far a corner may be off.
-precise float slack_of(TangentBounds u, TangentBounds v, EmitLevel level, bool is_uneven, float error)
+precise float slack_of(TangentBounds u, TangentBounds v, Grain grain, float error)
 {
-    precise float grain = is_uneven ? level.uneven_grain : level.grain;
-    precise float sides = (u.least + v.least) + (is_uneven ? max(u.most, v.most) : 0.0);
-    precise float noise = (((2.0 * error) * grain) * sides) / (u.least * v.least);
-    precise float turn = (is_uneven ? level.skew : 0.0) * max(u.change / v.least, v.change / u.least);
+    precise float sides = (u.least + v.least) + (grain.is_uneven ? max(u.most, v.most) : 0.0);
+    precise float noise = (((2.0 * error) * grain.grain) * sides) / (u.least * v.least);
+    precise float turn = grain.skew * max(u.change / v.least, v.change / u.least);
     precise float slack = (noise + noise * noise) + (turn + TURN_MARGIN);
     return slack;
 }
 
-// Whether nothing of a bicubic patch can be seen, by its B-spline control points.
-bool is_patch_unseen(vec3 p[16], EmitView view, EmitLevel level, bool is_uneven)
+// Bezier points of a bicubic patch, times 36, from those of a B-spline.
+void bezier_patch(vec3 p[16], out vec3 b[16])
 {
     vec3 row[16];
-    vec3 b[16]; // Bezier points times 36
     [[unroll]] for (int i = 0; i < 4; ++i) {
         bezier_points(p[4 * i], p[4 * i + 1], p[4 * i + 2], p[4 * i + 3], row[4 * i], row[4 * i + 1], row[4 * i + 2],
                       row[4 * i + 3]);
@@ -161,6 +170,52 @@ bool is_patch_unseen(vec3 p[16], EmitView view, EmitLevel level, bool is_uneven)
     [[unroll]] for (int i = 0; i < 4; ++i) {
         bezier_points(row[i], row[4 + i], row[8 + i], row[12 + i], b[i], b[4 + i], b[8 + i], b[12 + i]);
     }
+}
+
+precise vec3 between(vec3 a, vec3 b, float t)
+{
+    precise float s = 1.0 - t;
+    precise vec3 result = a * s + b * t;
+    return result;
+}
+
+// Value of the polar form of a cubic Bezier curve at (r, s, t).
+precise vec3 blossom(vec3 b0, vec3 b1, vec3 b2, vec3 b3, float r, float s, float t)
+{
+    vec3 c0 = between(b0, b1, r);
+    vec3 c1 = between(b1, b2, r);
+    vec3 c2 = between(b2, b3, r);
+    vec3 d0 = between(c0, c1, s);
+    vec3 d1 = between(c1, c2, s);
+    precise vec3 result = between(d0, d1, t);
+    return result;
+}
+
+// The Bezier points of the part between `low` and `high` of the parameters.
+void bezier_part(inout vec3 b[16], vec2 low, vec2 high)
+{
+    [[unroll]] for (int axis = 0; axis < 2; ++axis) {
+        int step = axis == 0 ? 1 : 4;
+        int row = axis == 0 ? 4 : 1;
+        [[unroll]] for (int i = 0; i < 4; ++i) {
+            vec3 b0 = b[i * row];
+            vec3 b1 = b[i * row + step];
+            vec3 b2 = b[i * row + 2 * step];
+            vec3 b3 = b[i * row + 3 * step];
+            float l = low[axis];
+            float h = high[axis];
+            b[i * row] = blossom(b0, b1, b2, b3, l, l, l);
+            b[i * row + step] = blossom(b0, b1, b2, b3, l, l, h);
+            b[i * row + 2 * step] = blossom(b0, b1, b2, b3, l, h, h);
+            b[i * row + 3 * step] = blossom(b0, b1, b2, b3, h, h, h);
+        }
+    }
+}
+
+// Whether nothing of a bicubic patch can be seen, by its Bezier points times 36. `displacement` is how far its points may be
+// moved; such patches are seen from behind.
+bool is_patch_unseen(vec3 b[16], EmitView view, Grain grain, bool cull_back, float displacement)
+{
     float largest_offset = 0.0;
     float largest = 0.0;
     [[unroll]] for (int i = 0; i < 16; ++i) {
@@ -174,12 +229,13 @@ bool is_patch_unseen(vec3 p[16], EmitView view, EmitLevel level, bool is_uneven)
         b[i] = scaled_point;
     }
     precise vec3 middle = 0.25 * ((b[0] + b[3]) + (b[12] + b[15])) - scale.eye;
+    precise float margin = (36.0 * displacement) * scale.factor;
     uint planes = 31u;
     float square_radius = 0.0;
     [[unroll]] for (int i = 0; i < 16; ++i) {
         precise vec3 d = b[i] - scale.eye;
         precise vec3 around = d - middle;
-        planes &= outside_planes(d, view, scale);
+        planes &= outside_planes(d, view, scale, margin);
         square_radius = max(square_radius, precise_dot(around, around));
     }
     vec3 along_u[12];
@@ -198,8 +254,8 @@ bool is_patch_unseen(vec3 p[16], EmitView view, EmitLevel level, bool is_uneven)
     precise float radius = sqrt(square_radius);
     precise float farthest = sqrt(precise_dot(middle, middle)) + radius;
     precise float error = scale.rounding + farthest * view.snap;
-    precise float least = (radius + farthest * slack_of(u, v, level, is_uneven, error)) + 2.0 * scale.eye_rounding;
-    return planes != 0u || (view.cull_back != 0u && product > least);
+    precise float least = (radius + farthest * slack_of(u, v, grain, error)) + 2.0 * scale.eye_rounding;
+    return planes != 0u || (cull_back && displacement == 0.0 && product > least);
 }
 
 // Whether a triangle shows its back, by offsets of its corners from the eye.

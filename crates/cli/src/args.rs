@@ -12,7 +12,7 @@ use planish_render::{Density, SurfaceMethod};
 
 use crate::aov::AovList;
 use crate::frames::FrameRange;
-use crate::names::{CreasePatchesName, MethodName, SchemeName, SpacingName, ViewName, name_of};
+use crate::names::{CreasePatchesName, LodName, MethodName, SchemeName, SpacingName, ViewName, name_of};
 use crate::values::{self, FrameRate, MAX_LEVEL};
 
 /// Level that irregularities are isolated to at most.
@@ -140,6 +140,21 @@ pub struct BenchArguments {
     /// Time fas alone at these tess factors instead
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = values::tess_factor, conflicts_with_all = ["levels", "cpu"])]
     pub tess: Vec<f32>,
+    /// Time fas and dfas side by side along this camera path instead
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["levels", "cpu", "tess"])]
+    pub path: Option<String>,
+    /// Every so many frames of the path
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "path", value_parser = repeat_parser())]
+    pub step: u32,
+    /// Write a chart of the path's frames to an .svg file
+    #[arg(long, value_name = "FILE", requires = "path")]
+    pub chart: Option<PathBuf>,
+    /// Triangle edges of about so many pixels along a path
+    #[arg(long, value_name = "P", default_value_t = 4.0, value_parser = values::edge_pixels, allow_negative_numbers = true)]
+    pub edge_pixels: f32,
+    /// Draw the scene's cameras with fas and dfas side by side instead
+    #[arg(long, conflicts_with_all = ["levels", "cpu", "tess", "path"])]
+    pub cameras: bool,
     /// Time fas at these tess factors with each kind of crease patches
     #[arg(long, requires = "tess")]
     pub creases: bool,
@@ -183,7 +198,7 @@ pub struct SceneArguments {
 #[derive(Debug, Args)]
 pub struct SurfaceArguments {
     /// Surface method
-    #[arg(long, value_enum, default_value_t = MethodName::Fas)]
+    #[arg(long, value_enum, default_value_t = MethodName::Dfas)]
     method: MethodName,
     /// Subdivision scheme, instead of the file's
     #[arg(long, value_enum)]
@@ -200,6 +215,9 @@ pub struct SurfaceArguments {
     /// Spacing of tessellated points
     #[arg(long, value_enum, default_value_t = SpacingName::FractionalOdd)]
     pub spacing: SpacingName,
+    /// What has a density of its own
+    #[arg(long, value_enum, default_value_t = LodName::Vertex)]
+    pub lod: LodName,
     /// Creases that are patches of their own, instead of being refined to the last level
     #[arg(long, value_enum, default_value_t = CreasePatchesName::Infinite)]
     pub crease_patches: CreasePatchesName,
@@ -219,8 +237,9 @@ impl SurfaceArguments {
     pub fn method(&self) -> Result<SurfaceMethod> {
         match self.method {
             MethodName::Fas => Ok(SurfaceMethod::Fas),
+            MethodName::Dfas => Ok(SurfaceMethod::Dfas),
             MethodName::Uniform => Ok(SurfaceMethod::Uniform),
-            other => bail!("method {} is not available yet (available: fas, uniform)", name_of(other)),
+            other => bail!("method {} is not available yet (available: fas, dfas, uniform)", name_of(other)),
         }
     }
 
@@ -358,7 +377,7 @@ mod tests {
     #[test]
     fn the_defaults_are_the_interface_s() {
         let arguments = render("");
-        assert_eq!(arguments.surface.method().unwrap(), SurfaceMethod::Fas);
+        assert_eq!(arguments.surface.method().unwrap(), SurfaceMethod::Dfas);
         assert_eq!(arguments.surface.density(), Density::EdgePixels(4.0));
         assert_eq!((arguments.surface.max_level(), arguments.view.size, arguments.samples), (10, [1280, 720], 1));
         assert_eq!(Spacing::from(arguments.surface.spacing), Spacing::FractionalOdd);
@@ -379,8 +398,8 @@ mod tests {
 
     #[test]
     fn methods_and_schemes_to_come_are_refused_when_asked_for() {
-        let message = render("--method dfas").surface.method().unwrap_err().to_string();
-        assert_eq!(message, "method dfas is not available yet (available: fas, uniform)");
+        let message = render("--method gregory").surface.method().unwrap_err().to_string();
+        assert_eq!(message, "method gregory is not available yet (available: fas, dfas, uniform)");
         let message = render("--scheme loop").surface.check_available().unwrap_err().to_string();
         assert_eq!(message, "scheme loop is not available yet (available: catmull-clark)");
         assert!(render("--scheme catmull-clark").surface.check_available().is_ok());

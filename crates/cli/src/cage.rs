@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
+use planish_render::ObjectDesc;
 use planish_scene::{Camera, LoadOptions, Scene, load};
 use planish_subdiv::ControlMesh;
 use planish_subdiv::mesh::Creasing;
@@ -19,11 +20,13 @@ use crate::culling::backs_are_hidden;
 /// Vertical field of view of a camera given by its eye, in degrees.
 const DEFAULT_FOV: f32 = 45.0;
 
-/// A scene of one mesh.
+/// A scene: meshes and their instances.
 pub struct Cage {
     path: PathBuf,
     scene: Scene,
-    /// What the mesh is like.
+    /// What each mesh is like.
+    mesh_facts: Vec<MeshFacts>,
+    /// What all of them are like together.
     pub facts: MeshFacts,
     /// How long reading the file took, in milliseconds.
     pub load_ms: f64,
@@ -38,11 +41,11 @@ impl Cage {
         for warning in &scene.warnings {
             console.warn(format_args!("{}: {warning}", path.display()));
         }
-        let [mesh] = scene.meshes.as_slice() else {
-            bail!("{}: found {} meshes, expected one; more are not supported yet", path.display(), scene.meshes.len());
-        };
-        let facts = MeshFacts::new(&mesh.control_mesh).with_context(|| path.display().to_string())?;
-        Ok(Self { path: path.to_owned(), scene, facts, load_ms })
+        let named = || path.display().to_string();
+        let facts = scene.meshes.iter().map(|mesh| MeshFacts::new(&mesh.control_mesh)).collect::<Result<Vec<_>>>();
+        let facts = facts.with_context(named)?;
+        let sum = facts.iter().fold(MeshFacts::default(), MeshFacts::with);
+        Ok(Self { path: path.to_owned(), scene, mesh_facts: facts, facts: sum, load_ms })
     }
 
     /// The file, as it was named.
@@ -50,14 +53,47 @@ impl Cage {
         &self.path
     }
 
-    /// The control mesh.
-    pub fn mesh(&self) -> &ControlMesh {
-        &self.scene.meshes[0].control_mesh
+    /// The control meshes.
+    pub fn meshes(&self) -> Vec<&ControlMesh> {
+        self.scene.meshes.iter().map(|mesh| &mesh.control_mesh).collect()
     }
 
-    /// Whether the mesh has texture coordinates.
+    /// Positions of the vertices of each.
+    pub fn positions(&self) -> Vec<&[[f32; 3]]> {
+        self.scene.meshes.iter().map(|mesh| mesh.control_mesh.positions.as_slice()).collect()
+    }
+
+    /// The control mesh of a scene that has one.
+    pub fn mesh(&self) -> Result<&ControlMesh> {
+        let [mesh] = self.scene.meshes.as_slice() else {
+            bail!("{}: found {} meshes, expected one", self.path.display(), self.scene.meshes.len());
+        };
+        Ok(&mesh.control_mesh)
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Whether a camera path is asked for.
+    pub fn follows_path(&self, view: &ViewArguments) -> bool {
+        view.eye.is_none() && view.camera.as_deref().is_some_and(|name| self.scene.path(name).is_ok())
+    }
+
+    /// The meshes' instances, as a camera sees them.
+    pub fn objects(&self, camera: &Camera) -> Vec<ObjectDesc> {
+        let object = |instance: &planish_scene::Instance| ObjectDesc {
+            mesh: instance.mesh,
+            to_world: instance.transform,
+            hides_backs: self.hides_backs(instance, camera),
+        };
+        self.scene.instances.iter().map(object).collect()
+    }
+
+    /// Whether a mesh has texture coordinates.
     pub fn has_uv(&self) -> bool {
-        self.scene.meshes[0].uv.is_some()
+        self.scene.meshes.iter().any(|mesh| mesh.uv.is_some())
     }
 
     /// Length of the bounding box' diagonal.
@@ -65,13 +101,18 @@ impl Cage {
         self.scene.bounds().map_or(0.0, |bounds| bounds.diagonal())
     }
 
-    /// The camera asked for.
-    pub fn camera(&self, view: &ViewArguments) -> Result<Camera> {
+    /// The camera asked for, in a frame: its name may be that of a camera path.
+    pub fn camera(&self, view: &ViewArguments, frame: i32) -> Result<Camera> {
         if let (Some(eye), Some(target)) = (view.eye, view.target) {
             let fov = view.fov.unwrap_or(DEFAULT_FOV);
             return Ok(Camera::upright("command line", eye, target, fov, self.diagonal())?);
         }
-        let mut camera = self.scene.camera(view.camera.as_deref()).with_context(|| self.path.display().to_string())?;
+        let named = || self.path.display().to_string();
+        let path = view.camera.as_deref().and_then(|name| self.scene.path(name).ok());
+        let mut camera = match path {
+            Some(path) => path.camera(frame.max(0).cast_unsigned()),
+            None => self.scene.camera(view.camera.as_deref()).with_context(named)?,
+        };
         camera.fov_y_degrees = view.fov.unwrap_or(camera.fov_y_degrees);
         Ok(camera)
     }
@@ -81,17 +122,19 @@ impl Cage {
         self.scene.default_view().with_context(|| self.path.display().to_string())
     }
 
-    /// Whether the backs of triangles are never seen by a camera.
-    pub fn hides_backs(&self, camera: &Camera) -> bool {
+    /// Whether the backs of an instance's triangles are never seen by a camera.
+    fn hides_backs(&self, instance: &planish_scene::Instance, camera: &Camera) -> bool {
         // Edits move the surface out of the cage's bounding box, or make holes; where the mesh is not manifold its sides
         // may be turned against each other.
-        let mesh = self.mesh();
-        let is_closed = self.facts.boundary_edges == 0 && mesh.holes.is_empty() && mesh.edits.is_empty();
-        let has = |feature: &str| self.facts.sharp_features.contains_key(feature);
+        let mesh = &self.scene.meshes[instance.mesh].control_mesh;
+        let facts = &self.mesh_facts[instance.mesh];
+        let is_closed = facts.boundary_edges == 0 && mesh.holes.is_empty() && mesh.edits.is_empty();
+        let has = |feature: &str| facts.sharp_features.contains_key(feature);
         let is_manifold = !has("non_manifold_edges") && !has("non_manifold_vertices");
         // Chaikin's rule has weights below 0 where an edge sharper than 1 becomes smooth.
         let is_within = mesh.options.creasing == Creasing::Uniform || !has("semi_sharp_edges");
-        is_closed && is_manifold && is_within && backs_are_hidden(self.mesh(), camera.eye.to_array())
+        let eye = instance.transform.inverse().transform_point3(camera.eye);
+        is_closed && is_manifold && is_within && eye.is_finite() && backs_are_hidden(mesh, eye.to_array())
     }
 }
 
@@ -126,6 +169,24 @@ pub struct MeshFacts {
 }
 
 impl MeshFacts {
+    /// The sum with another mesh's.
+    fn with(mut self, other: &Self) -> Self {
+        fn add<K: Ord + Copy>(to: &mut BTreeMap<K, u64>, from: &BTreeMap<K, u64>) {
+            from.iter().for_each(|(&key, count)| *to.entry(key).or_default() += count);
+        }
+        self.vertices += other.vertices;
+        self.faces += other.faces;
+        self.ptex_faces += other.ptex_faces;
+        self.boundary_edges += other.boundary_edges;
+        self.irregular_faces += other.irregular_faces;
+        self.extraordinary_vertices += other.extraordinary_vertices;
+        add(&mut self.faces_by_sides, &other.faces_by_sides);
+        add(&mut self.extraordinary_by_valence, &other.extraordinary_by_valence);
+        add(&mut self.boundary_extraordinary_by_valence, &other.boundary_extraordinary_by_valence);
+        add(&mut self.sharp_features, &other.sharp_features);
+        self
+    }
+
     fn new(mesh: &ControlMesh) -> Result<Self> {
         let level = Level::from_mesh(mesh)?;
         let mut facts = Self {

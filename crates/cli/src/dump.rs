@@ -6,14 +6,13 @@ use std::time::Instant;
 
 use anyhow::{Result, anyhow};
 use planish_film::{DumpVertex, check_dump_output, write_ply_stream};
-use planish_gpu::{Recorded, SubmitReport};
 use planish_render::{CapturedVertex, DumpPasses};
 
 use crate::args::DumpArguments;
 use crate::cage::{Cage, milliseconds};
 use crate::console::Console;
 use crate::frames::frame_path;
-use crate::offline::{Plan, Session, check_validation, open_device};
+use crate::offline::{Drawn, Plan, Session, check_validation, open_device};
 use crate::render::check_placeholder;
 use crate::stats::{FrameStats, Stats, StatsOutput};
 
@@ -35,9 +34,9 @@ pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
     let device = open_device(&arguments.device, console)?;
     let mut session = Session::new(&device, &cage, &plan, console)?;
     let start = Instant::now();
-    let passes = DumpPasses::new(&device, &plan.desc)?;
+    let passes = DumpPasses::new(&device, &plan.desc, &plan.needs)?;
     session.pipelines_ms += milliseconds(start);
-    let dump = Dump { points: session.record_points()?, passes, session: &session, positions: &cage.mesh().positions };
+    let mut dump = Dump { passes, session, cages: cage.positions() };
 
     let mut frames = Vec::new();
     if arguments.frames.repeat.is_some() {
@@ -54,56 +53,56 @@ pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
         if timed.is_empty() {
             timed.push(written);
         }
-        let counts = &session.surface.tables().counts;
-        let stats =
-            |done: &Done| FrameStats::new(frame, &session, &done.report, done.wall_ms, counts, Some(done.triangles));
-        frames.extend(timed.iter().map(stats));
+        frames.extend(timed.iter().map(|done| FrameStats::new(frame, &dump.session, &done.drawn, done.triangles)));
         console.explain(format_args!("wrote {}", path.display()));
     }
     console.end_progress();
-    stats_output.write(&Stats::new(&cage, &session, 0, frames))?;
+    stats_output.write(&Stats::new(&cage, &dump.session, 0, frames))?;
     check_validation(&device)
 }
 
 /// What a frame of a dump needs.
 struct Dump<'a> {
-    session: &'a Session,
-    positions: &'a [[f32; 3]],
-    points: Recorded,
+    session: Session,
+    cages: Vec<&'a [[f32; 3]]>,
     passes: DumpPasses,
 }
 
 /// A frame that was captured.
 struct Done {
-    report: SubmitReport,
-    wall_ms: f64,
+    drawn: Drawn,
     triangles: u64,
 }
 
 impl Dump<'_> {
-    /// Makes the points and captures all triangles. What the sink does with them is not timed.
-    fn frame(&self, mut sink: impl FnMut(&[CapturedVertex]) -> Result<()>) -> Result<Done> {
+    /// Makes the lists and captures all triangles. What the sink does with them is not timed.
+    fn frame(&mut self, sink: impl FnMut(&[CapturedVertex]) -> Result<()>) -> Result<Done> {
+        let drawn = self.session.make_lists(&self.cages)?;
+        self.capture(drawn, sink)
+    }
+
+    fn capture(&self, mut drawn: Drawn, mut sink: impl FnMut(&[CapturedVertex]) -> Result<()>) -> Result<Done> {
         let start = Instant::now();
-        let (report, _) = self.session.run(self.positions, &self.points)?;
-        let Session { device, surface, constants, factors, .. } = self.session;
         let (mut triangles, mut sink_ms) = (0, 0.0);
-        self.passes.capture(device, surface, constants, factors, |vertices| {
+        self.passes.capture(&self.session.device, &self.session.surface, |vertices| {
             let start = Instant::now();
             triangles += vertices.len() as u64 / 3;
             let taken = sink(vertices);
             sink_ms += milliseconds(start);
             taken
         })?;
-        Ok(Done { report, wall_ms: milliseconds(start) - sink_ms, triangles })
+        drawn.wall_ms += milliseconds(start) - sink_ms;
+        Ok(Done { drawn, triangles })
     }
 
     /// Writes a frame while it is captured: a dump of any size needs the memory of a few parts.
-    fn write(&self, path: &Path) -> Result<Done> {
-        let vertex_count = 3 * self.session.expected_triangle_count();
+    fn write(&mut self, path: &Path) -> Result<Done> {
+        let drawn = self.session.make_lists(&self.cages)?;
+        let vertex_count = 3 * planish_render::listed_triangle_count(&self.session.device, &self.session.surface)?;
         let (sender, receiver) = sync_channel::<Vec<DumpVertex>>(QUEUED_PARTS);
         std::thread::scope(|scope| {
             let writer = scope.spawn(move || write_ply_stream(path, vertex_count, receiver.into_iter().flatten()));
-            let captured = self.frame(move |vertices| {
+            let captured = self.capture(drawn, move |vertices| {
                 sender.send(vertices.iter().map(dump_vertex).collect()).map_err(|_| anyhow!("the writer has stopped"))
             });
             let written = writer.join().map_err(|_| anyhow!("writing {} failed", path.display()))?;

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use anyhow::{Context, Result};
-use planish_render::{Preprocessed, SurfaceDesc, preprocess};
+use planish_render::{Preprocessed, SurfaceDesc, SurfaceMethod, preprocess};
 use planish_subdiv::edits::deepest_level;
 use planish_subdiv::mesh::{BoundaryInterpolation, Creasing, FaceVaryingInterpolation, TriangleSubdivision};
-use planish_subdiv::tables::Tables;
+use planish_subdiv::selection::{PatchCounts, deepest_cut};
+use planish_subdiv::tables::{IndexLists, Tables};
 use planish_subdiv::{ControlMesh, patch::PatchInfo};
 use serde::Serialize;
 
@@ -22,10 +23,10 @@ use crate::text_table::{TextTable, bytes_text, milliseconds_text};
 pub fn run(arguments: &InfoArguments, console: &Console) -> Result<()> {
     let cage = Cage::load(&arguments.scene.path, arguments.scene.repair, console)?;
     let desc = surface_desc(arguments, &cage)?;
-    let mut made = preprocess(cage.mesh(), &desc).with_context(|| cage.path().display().to_string())?;
+    let mut made = preprocess(&cage.meshes(), &desc).with_context(|| cage.path().display().to_string())?;
     let (mut topology, mut tables) = (vec![made.times.topology], vec![made.times.tables]);
     for _ in 1..arguments.repeat {
-        made = preprocess(cage.mesh(), &desc)?;
+        made = preprocess(&cage.meshes(), &desc)?;
         topology.push(made.times.topology);
         tables.push(made.times.tables);
     }
@@ -41,7 +42,7 @@ fn surface_desc(arguments: &InfoArguments, cage: &Cage) -> Result<SurfaceDesc> {
         Some(level) if surface.tess.is_none() && surface.edge_pixels.is_none() => {
             surface.check_available()?;
             let crease_patches = surface.crease_patches.into();
-            Ok(SurfaceDesc { method: surface.method()?, spacing: surface.spacing.into(), level, crease_patches })
+            Ok(SurfaceDesc { method: surface.method()?, level, crease_patches })
         }
         _ => Ok(Plan::unseen(cage, surface, &arguments.view)?.desc),
     }
@@ -103,7 +104,7 @@ impl Info {
             scheme: "catmull-clark",
             load_ms: cage.load_ms,
             mesh: cage.facts.clone(),
-            features: Features::new(cage.mesh(), cage.has_uv()),
+            features: Features::new(&cage.meshes(), cage.has_uv()),
             refinement: RefinementInfo::new(desc, made),
         }
     }
@@ -146,14 +147,16 @@ fn histogram(counts: &BTreeMap<u32, u64>, of: &str, unit: &str) -> String {
 }
 
 impl Features {
-    fn new(mesh: &ControlMesh, uv: bool) -> Self {
-        let options = &mesh.options;
+    /// Of all meshes; options are those of the first.
+    fn new(meshes: &[&ControlMesh], uv: bool) -> Self {
+        let options = meshes.first().map(|mesh| mesh.options).unwrap_or_default();
+        let sum = |of: fn(&ControlMesh) -> usize| meshes.iter().map(|mesh| of(mesh)).sum();
         Self {
-            creases: mesh.creases.len(),
-            corners: mesh.corners.len(),
-            holes: mesh.holes.len(),
-            edits: mesh.edits.len(),
-            deepest_edit_level: deepest_level(mesh),
+            creases: sum(|mesh| mesh.creases.len()),
+            corners: sum(|mesh| mesh.corners.len()),
+            holes: sum(|mesh| mesh.holes.len()),
+            edits: sum(|mesh| mesh.edits.len()),
+            deepest_edit_level: meshes.iter().map(|mesh| deepest_level(mesh)).max().unwrap_or(0),
             uv,
             boundary: match options.boundary {
                 BoundaryInterpolation::None => "none",
@@ -207,8 +210,9 @@ impl Features {
 impl RefinementInfo {
     fn new(desc: &SurfaceDesc, made: &Preprocessed) -> Self {
         let tables = &made.tables;
+        let counts = patch_counts(desc, made);
         let levels = tables.levels.iter().enumerate().map(|(level, points)| {
-            let counts = tables.counts.get(level).copied().unwrap_or_default();
+            let counts = counts.get(level).copied().unwrap_or_default();
             LevelInfo {
                 points: points.points.len() as u64,
                 regular: counts.regular,
@@ -261,11 +265,29 @@ impl RefinementInfo {
     }
 }
 
+/// Patches of each level where every irregularity is isolated to the last one.
+fn patch_counts(desc: &SurfaceDesc, made: &Preprocessed) -> Vec<PatchCounts> {
+    let mut counts = vec![PatchCounts::default(); made.tables.last_level as usize + 1];
+    if desc.method == SurfaceMethod::Uniform {
+        counts[made.tables.last_level as usize].filling = made.tables.filling.len() as u32;
+        return counts;
+    }
+    for mesh in &made.meshes {
+        for (sum, level) in counts.iter_mut().zip(deepest_cut(&made.tables, mesh).counts) {
+            sum.regular += level.regular;
+            sum.transition += level.transition;
+            sum.filling += level.filling;
+        }
+    }
+    counts
+}
+
 /// Bytes that the tables take on a device.
 pub fn table_bytes(tables: &Tables) -> u64 {
     /// First index, first weight and count.
     const ROW: usize = size_of::<[u32; 3]>();
     let info = size_of_val(&PatchInfo::default().pack());
+    let lists = |lists: &IndexLists| size_of_val(lists.first.as_slice()) + size_of_val(lists.indices.as_slice());
     let (stencils, limits) = (&tables.stencils, &tables.limits);
     let bytes = [
         (stencils.rows.len() + limits.rows.len()) * ROW,
@@ -273,9 +295,11 @@ pub fn table_bytes(tables: &Tables) -> u64 {
         size_of_val(stencils.weights.as_slice()),
         size_of_val(limits.indices.as_slice()),
         size_of_val(limits.weights.as_slice()),
-        tables.patches.len() * (size_of::<[u32; 16]>() + info),
+        tables.patches.len() * (size_of::<[u32; 16 + 1 + 4]>() + info),
+        tables.irregular.len() * (size_of::<[u32; 4 * 5 + 1]>() + info),
         tables.filling.len() * (size_of::<[u32; 4]>() + info),
-        size_of_val(tables.filling_midpoints.as_slice()),
+        size_of_val(tables.ptex_faces.as_slice()),
+        lists(&tables.stars) + lists(&tables.slots.neighbours) + lists(&tables.slots.rings),
     ];
     bytes.iter().sum::<usize>() as u64
 }
@@ -293,10 +317,10 @@ mod tests {
     #[test]
     fn features_name_what_is_there_alone() {
         let mut mesh = ControlMesh::default();
-        assert_eq!(Features::new(&mesh, false).to_text(), "none");
+        assert_eq!(Features::new(&[&mesh], false).to_text(), "none");
         mesh.holes = vec![3, 4];
         assert_eq!(
-            Features::new(&mesh, true).to_text(),
+            Features::new(&[&mesh], true).to_text(),
             "2 holes, texture coordinates (interpolation: corners plus 1)"
         );
     }

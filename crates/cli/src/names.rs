@@ -14,6 +14,15 @@ pub enum MethodName {
     Uniform,
 }
 
+/// What has a density of tessellation of its own, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LodName {
+    /// Every vertex of a cage
+    Vertex,
+    /// Every object: from the distance to its centre
+    Object,
+}
+
 /// Subdivision schemes by name.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum SchemeName {

@@ -4,19 +4,32 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use glam::{Mat4, Vec3};
-use planish_gpu::{Device, Encoder, Recorded, SubmitReport};
-use planish_render::density::{FACTOR_COUNT, isolation_level, level_factors, tess_factor};
-use planish_render::tessellation::triangle_count;
+use planish_gpu::{Calls, Device, Encoder, Recorded, SubmitReport};
+use planish_render::density::{MAX_UNCUT_DENSITY, isolation_level, largest_density};
 use planish_render::{
-    Density, DrawOptions, DrawPasses, FrameCamera, FrameConstants, PointStages, Surface, SurfaceDesc, Targets, View,
-    preprocess,
+    Culling, Density, DrawOptions, DrawPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, ObjectDesc,
+    Selection, Spacing, Status, Surface, SurfaceDesc, SurfaceMethod, Targets, View, preprocess,
 };
 use planish_scene::Camera;
-use planish_subdiv::tables::PatchCounts;
+use planish_subdiv::refine::CreasePatches;
 
 use crate::args::{DeviceArguments, SurfaceArguments, ViewArguments};
 use crate::cage::{Cage, milliseconds};
 use crate::console::Console;
+use crate::frames::FrameRange;
+use crate::names::LodName;
+
+/// What a plan is made for.
+pub struct PlanSetting {
+    pub method: SurfaceMethod,
+    /// No irregularity is isolated deeper.
+    pub max_level: u32,
+    pub crease_patches: CreasePatches,
+    pub spacing: Spacing,
+    /// Size of the image in pixels.
+    pub size: [u32; 2],
+    pub options: FrameOptions,
+}
 
 /// How a cage is to be evaluated and seen: all that is decided before a device is needed.
 pub struct Plan {
@@ -24,38 +37,95 @@ pub struct Plan {
     pub camera: Camera,
     /// The same, as the passes want it.
     pub frame_camera: FrameCamera,
+    /// The scene's instances, as the camera sees them.
+    pub objects: Vec<ObjectDesc>,
     /// What the surface is made as.
     pub desc: SurfaceDesc,
-    /// Tess factor of the base edges.
-    pub tess_factor: f32,
+    /// What its frames may need.
+    pub needs: FrameNeeds,
+    /// How frames are selected and culled.
+    pub options: FrameOptions,
 }
 
 impl Plan {
-    /// Decides for a cage that is to be seen.
-    pub fn new(cage: &Cage, surface: &SurfaceArguments, view: &ViewArguments) -> Result<Self> {
-        let camera = cage.camera(view)?;
-        Self::with_camera(cage, surface, view, camera)
+    /// Decides for a cage that is to be seen, in all frames of a range.
+    pub fn new(cage: &Cage, surface: &SurfaceArguments, view: &ViewArguments, range: FrameRange) -> Result<Self> {
+        let first = range.frames().next().unwrap_or_default();
+        if !cage.follows_path(view) {
+            return Self::with_cameras(cage, surface, view, &[cage.camera(view, first)?]);
+        }
+        let cameras = range.frames().map(|frame| cage.camera(view, frame)).collect::<Result<Vec<_>>>()?;
+        Self::with_cameras(cage, surface, view, &cameras)
     }
 
     /// Decides for a cage that is not drawn: with a given tess factor there need not be a camera that sees it.
     pub fn unseen(cage: &Cage, surface: &SurfaceArguments, view: &ViewArguments) -> Result<Self> {
-        let camera = match (cage.camera(view), surface.density()) {
+        let camera = match (cage.camera(view, 0), surface.density()) {
             (Err(_), Density::Tess(_)) => Camera::upright("none", Vec3::Z, Vec3::ZERO, 45.0, 1.0)?,
             (camera, _) => camera?,
         };
-        Self::with_camera(cage, surface, view, camera)
+        Self::with_cameras(cage, surface, view, &[camera])
     }
 
-    fn with_camera(cage: &Cage, surface: &SurfaceArguments, view: &ViewArguments, camera: Camera) -> Result<Self> {
+    /// `cameras` of all frames, of which there is one at least.
+    fn with_cameras(cage: &Cage, surface: &SurfaceArguments, view: &ViewArguments, cameras: &[Camera]) -> Result<Self> {
         surface.check_available()?;
-        let method = surface.method()?;
-        let frame_camera = frame_camera(&camera, view.size);
-        let tess_factor = tess_factor(cage.mesh(), &frame_camera, surface.density())?;
-        let level = isolation_level(tess_factor, surface.max_level());
-        let crease_patches = surface.crease_patches.into();
-        let desc = SurfaceDesc { method, spacing: surface.spacing.into(), level, crease_patches };
-        Ok(Self { camera, frame_camera, desc, tess_factor })
+        let options = frame_options(surface.method()?, surface.density(), surface.lod == LodName::Object);
+        let setting = PlanSetting {
+            method: surface.method()?,
+            max_level: surface.max_level(),
+            crease_patches: surface.crease_patches.into(),
+            spacing: surface.spacing.into(),
+            size: view.size,
+            options,
+        };
+        Self::of(cage, &setting, cameras)
     }
+
+    /// Decides for frames seen by these cameras, of which there is one at least: deep enough for all of them, and no back is
+    /// hidden that one of them sees.
+    pub fn of(cage: &Cage, setting: &PlanSetting, cameras: &[Camera]) -> Result<Self> {
+        let mut objects = cage.objects(&cameras[0]);
+        let mut density = 0.0_f32;
+        for camera in cameras {
+            let seen = cage.objects(camera);
+            objects.iter_mut().zip(&seen).for_each(|(object, seen)| object.hides_backs &= seen.hides_backs);
+            let frame_camera = frame_camera(camera, setting.size);
+            density = density.max(largest_density(&cage.meshes(), &seen, &frame_camera, &setting.options)?);
+        }
+        let level = isolation_level(density, setting.max_level);
+        Ok(Self {
+            camera: cameras[0].clone(),
+            frame_camera: frame_camera(&cameras[0], setting.size),
+            objects,
+            desc: SurfaceDesc { method: setting.method, level, crease_patches: setting.crease_patches },
+            needs: frame_needs(setting.spacing, density),
+            options: setting.options,
+        })
+    }
+
+    /// What culling is left out of a frame.
+    pub fn cull(&mut self, no_cull: bool) {
+        self.needs.culls = !no_cull;
+        self.options.culling = if no_cull { Culling::Off } else { Culling::UnseenAndBacks };
+    }
+
+    /// Whether no triangle that shows its back is seen.
+    fn hides_backs(&self) -> bool {
+        let hides = |object: &ObjectDesc| object.hides_backs && !object.is_mirrored();
+        self.options.culling == Culling::UnseenAndBacks && self.objects.iter().all(hides)
+    }
+}
+
+/// What frames of about this density need; nothing is culled. Twice as dense a frame, of a cage that moves, has all it needs.
+pub fn frame_needs(spacing: Spacing, density: f32) -> FrameNeeds {
+    FrameNeeds { spacing, culls: false, cuts: 2.0 * density > MAX_UNCUT_DENSITY }
+}
+
+/// How a method selects; nothing is culled.
+pub fn frame_options(method: SurfaceMethod, density: Density, object_lod: bool) -> FrameOptions {
+    let selection = if method == SurfaceMethod::Fas { Selection::Static } else { Selection::Dynamic };
+    FrameOptions { density, selection, culling: Culling::Off, object_lod }
 }
 
 /// A scene's camera, for an image of this size.
@@ -89,133 +159,120 @@ pub fn check_validation(device: &Device) -> Result<()> {
     Ok(())
 }
 
-/// A cage on a device, ready for frames.
+/// A scene on a device, ready for frames.
 pub struct Session {
     pub device: Device,
     pub surface: Surface,
-    pub constants: FrameConstants,
-    pub factors: [f32; FACTOR_COUNT],
-    pub tess_factor: f32,
     pub camera: FrameCamera,
-    stages: PointStages,
+    pub options: FrameOptions,
+    needs: FrameNeeds,
+    hides_backs: bool,
+    stages: FrameStages,
     /// How long making pipelines took, in milliseconds.
     pub pipelines_ms: f64,
 }
 
 impl Session {
-    /// Builds the cage's tables and uploads them.
+    /// Builds the scene's tables and uploads them.
     pub fn new(device: &Device, cage: &Cage, plan: &Plan, console: &Console) -> Result<Self> {
         let named = || cage.path().display().to_string();
-        let made = preprocess(cage.mesh(), &plan.desc).with_context(named)?;
-        let factors = level_factors(plan.tess_factor, plan.desc.spacing, &made.tables).with_context(named)?;
-        let surface = Surface::new(device, cage.mesh(), plan.desc, made, &factors).with_context(named)?;
+        let made = preprocess(&cage.meshes(), &plan.desc).with_context(named)?;
+        let surface = Surface::new(device, &cage.meshes(), &plan.objects, plan.desc, made).with_context(named)?;
         let start = Instant::now();
-        let stages = PointStages::new(device)?;
+        let stages = FrameStages::new(device, &plan.needs)?;
         let pipelines_ms = milliseconds(start);
-        let constants = FrameConstants::new(device, &plan.frame_camera, &factors)?;
-        let counts = surface.tables().total_counts();
         console.explain(format_args!(
-            "tess factor {}, irregularities isolated to level {}: {} regular, {} transition and {} filling patches",
-            plan.tess_factor,
+            "{} objects, irregularities isolated to level {} at most",
+            plan.objects.len(),
             surface.tables().last_level,
-            counts.regular,
-            counts.transition,
-            counts.filling
         ));
         Ok(Self {
             device: device.clone(),
             surface,
-            constants,
-            factors,
-            tess_factor: plan.tess_factor,
             camera: plan.frame_camera,
+            options: plan.options,
+            needs: plan.needs,
+            hides_backs: plan.hides_backs(),
             stages,
             pipelines_ms,
         })
     }
 
-    /// Records the stages that make points, alone.
-    pub fn record_points(&self) -> Result<Recorded> {
-        let mut encoder = Encoder::new(&self.device, "points")?;
+    /// Records the stages before drawing, alone.
+    fn record_stages(&self) -> Result<Recorded> {
+        let mut encoder = Encoder::new(&self.device, "stages")?;
         self.stages.record(&mut encoder, &self.surface);
+        FrameStages::record_end(&mut encoder, &self.surface);
         Ok(encoder.finish()?)
     }
 
-    /// Makes images and the passes that draw into them, and records a whole frame.
-    pub fn images(&mut self, view: View, layers: bool, culling: Culling) -> Result<Images> {
-        let desc = self.surface.desc();
-        let options =
-            DrawOptions { view, layers, cull_back: culling == Culling::UnseenAndBacks, emit: culling != Culling::Off };
+    /// Makes images and the passes that draw into them.
+    pub fn images(&mut self, view: View, layers: bool) -> Result<Images> {
+        let options = DrawOptions { view, layers, cull_back: self.hides_backs };
         let start = Instant::now();
-        let passes = DrawPasses::new(&self.device, desc, &options)?;
+        let passes = DrawPasses::new(&self.device, self.surface.desc(), &self.needs, &options)?;
         self.pipelines_ms += milliseconds(start);
         let targets = Targets::new(&self.device, self.camera.size, options.needs_layers())?;
-        let frame = self.record_frame(&passes, &targets, &self.camera)?;
-        Ok(Images { targets, passes, frame })
+        Ok(Images { targets, passes })
     }
 
-    /// Records a frame of its own for a camera that is the session's but for a fraction of a pixel.
-    pub fn record_sample(&self, images: &Images, camera: &FrameCamera) -> Result<Recorded> {
-        self.record_frame(&images.passes, &images.targets, camera)
-    }
-
-    fn record_frame(&self, passes: &DrawPasses, targets: &Targets, camera: &FrameCamera) -> Result<Recorded> {
+    fn record_frame(&self, images: &Images, camera: &FrameCamera) -> Result<Recorded> {
         let mut encoder = Encoder::new(&self.device, "frame")?;
         self.stages.record(&mut encoder, &self.surface);
-        passes.record(&mut encoder, &self.surface, &self.constants, camera, targets);
+        images.passes.record(&mut encoder, &self.surface, camera, &images.targets);
+        FrameStages::record_end(&mut encoder, &self.surface);
         Ok(encoder.finish()?)
     }
 
-    /// Uploads the cage and runs what was recorded; the report and the wall time from upload to fence in milliseconds.
-    pub fn run(&self, positions: &[[f32; 3]], frame: &Recorded) -> Result<(SubmitReport, f64)> {
-        let start = Instant::now();
-        self.surface.set_cage(positions)?;
-        let report = self.device.submit_and_wait(frame)?;
-        Ok((report, milliseconds(start)))
+    /// Draws a frame of cages at these positions; again, with more room, while a list overflows.
+    pub fn draw(&mut self, images: &Images, camera: &FrameCamera, cages: &[&[[f32; 3]]]) -> Result<Drawn> {
+        self.run(cages, camera, |session| session.record_frame(images, camera))
     }
 
-    /// Patches of each level that the frame of `images` that ran last has drawn.
-    pub fn drawn_counts(&self, images: &Images) -> Result<Vec<PatchCounts>> {
-        if images.passes.has_emit() {
-            return Ok(self.surface.download_visible_counts(&self.device)?);
-        }
-        Ok(self.surface.tables().counts.clone())
+    /// Runs the stages before drawing, alone.
+    pub fn make_lists(&mut self, cages: &[&[[f32; 3]]]) -> Result<Drawn> {
+        let camera = self.camera;
+        self.run(cages, &camera, Self::record_stages)
     }
 
-    /// Number of triangles, by the rules of the tessellator.
-    pub fn expected_triangle_count(&self) -> u64 {
-        let desc = self.surface.desc();
-        triangle_count(self.surface.tables(), &self.factors, desc.method, desc.spacing)
-    }
-}
-
-/// What is left out of a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Culling {
-    /// Nothing.
-    Off,
-    /// Patches outside of the view.
-    Unseen,
-    /// These, and what shows its back.
-    UnseenAndBacks,
-}
-
-impl Culling {
-    /// Of a cage as a camera sees it.
-    pub fn new(cage: &Cage, camera: &Camera, no_cull: bool) -> Self {
-        match (no_cull, cage.hides_backs(camera)) {
-            (true, _) => Self::Off,
-            (false, false) => Self::Unseen,
-            (false, true) => Self::UnseenAndBacks,
+    fn run(
+        &mut self,
+        cages: &[&[[f32; 3]]],
+        camera: &FrameCamera,
+        record: impl Fn(&Self) -> Result<Recorded>,
+    ) -> Result<Drawn> {
+        loop {
+            let frame = record(self)?;
+            let start = Instant::now();
+            for (mesh, positions) in cages.iter().enumerate() {
+                self.surface.set_cage(mesh, positions)?;
+            }
+            self.surface.set_frame(camera, &self.options)?;
+            let report = self.device.submit_and_wait(&frame)?;
+            let wall_ms = milliseconds(start);
+            let status = self.surface.status()?;
+            if !self.surface.grow(&self.device)? {
+                return Ok(Drawn { report, wall_ms, status, calls: frame.calls() });
+            }
         }
     }
 }
 
-/// Images, and a frame recorded into them.
+/// A frame that was drawn.
+pub struct Drawn {
+    /// Times and counts of the device.
+    pub report: SubmitReport,
+    /// From cage upload to fence, in milliseconds.
+    pub wall_ms: f64,
+    /// What the frame left in its lists.
+    pub status: Status,
+    /// Dispatches and draws that were recorded.
+    pub calls: Calls,
+}
+
+/// Images, and the passes that draw into them.
 pub struct Images {
     /// The images.
     pub targets: Targets,
     passes: DrawPasses,
-    /// Points and draws; can run any number of times.
-    pub frame: Recorded,
 }

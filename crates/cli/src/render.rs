@@ -12,8 +12,8 @@ use crate::console::Console;
 use crate::frames::{FrameRange, frame_path, has_placeholder};
 use crate::image::{ColorSum, read_layers};
 use crate::jitter::sample_offsets;
-use crate::offline::{Culling, Images, Plan, Session, aspect, check_validation, open_device};
-use crate::stats::{FrameStats, Stats, StatsOutput, drawn_triangle_count};
+use crate::offline::{Images, Plan, Session, aspect, check_validation, frame_camera, open_device};
+use crate::stats::{FrameStats, Stats, StatsOutput};
 
 /// Runs the command.
 pub fn run(arguments: &RenderArguments, console: &Console) -> Result<()> {
@@ -22,11 +22,11 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<()> {
     check_outputs(arguments, aovs, console)?;
     let stats_output = StatsOutput(arguments.frames.stats.as_ref());
     stats_output.check(arguments.outputs.iter().map(PathBuf::as_path))?;
-    let plan = Plan::new(&cage, &arguments.surface, &arguments.view)?;
+    let mut plan = Plan::new(&cage, &arguments.surface, &arguments.view, arguments.frames.range())?;
+    plan.cull(arguments.frames.no_cull);
     let device = open_device(&arguments.device, console)?;
     let mut session = Session::new(&device, &cage, &plan, console)?;
-    let culling = Culling::new(&cage, &plan.camera, arguments.frames.no_cull);
-    let images = session.images(arguments.shown.into(), !aovs.is_empty(), culling)?;
+    let images = session.images(arguments.shown.into(), !aovs.is_empty())?;
     let mut sum = ColorSum::new(&device, &images.targets)?;
 
     let mut frames = Vec::new();
@@ -34,8 +34,10 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<()> {
     for (done, frame) in (0_u64..).zip(range.frames()) {
         console.progress(format_args!("frame {frame} ({done} of {} done)", range.count()));
         let is_first = done == 0;
-        timed_frames(arguments, &cage, &session, &images, frame, is_first, &mut frames)?;
-        let film = film(arguments, &plan, &session, &images, &mut sum, frame, console)?;
+        plan.camera = cage.camera(&arguments.view, frame)?;
+        session.camera = frame_camera(&plan.camera, arguments.view.size);
+        timed_frames(arguments, &cage, &mut session, &images, frame, is_first, &mut frames)?;
+        let film = film(arguments, &cage, &plan, &mut session, &images, &mut sum, frame, console)?;
         for output in &arguments.outputs {
             let path = frame_path(output, frame);
             write_image(&film, &path)?;
@@ -74,36 +76,36 @@ pub fn check_placeholder(output: &Path, range: FrameRange) -> Result<()> {
 fn timed_frames(
     arguments: &RenderArguments,
     cage: &Cage,
-    session: &Session,
+    session: &mut Session,
     images: &Images,
     frame: i32,
     is_first: bool,
     frames: &mut Vec<FrameStats>,
 ) -> Result<()> {
-    let positions = &cage.mesh().positions;
+    let (cages, camera) = (cage.positions(), session.camera);
     if arguments.frames.repeat.is_some() && is_first {
-        session.run(positions, &images.frame)?;
+        session.draw(images, &camera, &cages)?;
     }
     for _ in 0..arguments.frames.repeat.unwrap_or(1) {
-        let (report, wall_ms) = session.run(positions, &images.frame)?;
-        let triangles = drawn_triangle_count(&report);
-        let counts = session.drawn_counts(images)?;
-        frames.push(FrameStats::new(frame, session, &report, wall_ms, &counts, triangles));
+        let drawn = session.draw(images, &camera, &cages)?;
+        frames.push(FrameStats::drawn(frame, session, &drawn));
     }
     Ok(())
 }
 
 /// Reads the frame that was just drawn, and draws the samples that it needs besides.
+#[expect(clippy::too_many_arguments, reason = "a film is made of all that a render has")]
 fn film(
     arguments: &RenderArguments,
+    cage: &Cage,
     plan: &Plan,
-    session: &Session,
+    session: &mut Session,
     images: &Images,
     sum: &mut ColorSum,
     frame: i32,
     console: &Console,
 ) -> Result<Film> {
-    let device = &session.device;
+    let device = &session.device.clone();
     let aovs = arguments.aov.available()?;
     let layers = if aovs.is_empty() {
         Vec::new()
@@ -116,16 +118,16 @@ fn film(
     } else {
         for (done, offset) in (0..).zip(sample_offsets(arguments.samples)) {
             console.progress(format_args!("frame {frame}: sample {done} of {}", arguments.samples));
-            let sample = session.record_sample(images, &session.camera.jittered(offset))?;
-            device.submit_and_wait(&sample)?;
+            let camera = session.camera.jittered(offset);
+            session.draw(images, &camera, &cage.positions())?;
             sum.add(device)?;
         }
     }
-    let [width, height] = plan.frame_camera.size;
-    Ok(Film { width, height, color: sum.take(), layers, metadata: metadata(arguments, plan, frame) })
+    let [width, height] = session.camera.size;
+    Ok(Film { width, height, color: sum.take(), layers, metadata: metadata(arguments, plan, frame, [width, height]) })
 }
 
-fn metadata(arguments: &RenderArguments, plan: &Plan, frame: i32) -> Metadata {
+fn metadata(arguments: &RenderArguments, plan: &Plan, frame: i32, size: [u32; 2]) -> Metadata {
     let rate = arguments.frames.fps;
     let mut metadata = Metadata {
         software: format!("planish {}", env!("CARGO_PKG_VERSION")),
@@ -137,7 +139,7 @@ fn metadata(arguments: &RenderArguments, plan: &Plan, frame: i32) -> Metadata {
     let camera = &plan.camera;
     metadata.set_camera(
         &camera.view_matrix().to_cols_array_2d(),
-        &camera.projection_matrix(aspect(plan.frame_camera.size)).to_cols_array_2d(),
+        &camera.projection_matrix(aspect(size)).to_cols_array_2d(),
     );
     metadata
 }

@@ -6,12 +6,12 @@ use anyhow::{Result, bail};
 use planish_film::{check_text_output, write_text};
 use planish_gpu::{Device, SubmitReport};
 use planish_render::SurfaceMethod;
-use planish_subdiv::tables::PatchCounts;
+use planish_subdiv::selection::PatchCounts;
 use serde::Serialize;
 
 use crate::cage::Cage;
 use crate::console::print_output;
-use crate::offline::Session;
+use crate::offline::{Drawn, Session};
 
 /// The path that stands for standard output.
 const STANDARD_OUTPUT: &str = "-";
@@ -84,9 +84,20 @@ pub struct FrameStats {
     /// Of all kinds.
     pub patches_by_level: Vec<u64>,
     pub triangles: u64,
+    /// Points and limit points that were computed.
+    pub points: u64,
+    /// Commands that the frame was recorded with.
+    pub calls: CallStats,
     pub gpu_ms: GpuStats,
     /// From cage upload to fence, in milliseconds.
     pub wall_ms: f64,
+}
+
+/// Commands of a frame: as many whatever is in view.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct CallStats {
+    pub dispatches: u32,
+    pub draws: u32,
 }
 
 /// Patches by kind.
@@ -118,6 +129,8 @@ impl GpuStats {
         for [(_, start), (stage, end)] in timestamps.array_windows() {
             let milliseconds = end - start;
             match stage.as_str() {
+                "density" => stats.density += milliseconds,
+                "select" => stats.select += milliseconds,
                 "subdivide" => stats.subdivide += milliseconds,
                 "limit" => stats.limit += milliseconds,
                 "emit" => stats.emit += milliseconds,
@@ -131,42 +144,45 @@ impl GpuStats {
 }
 
 impl FrameStats {
-    /// Of a frame that was drawn, with these patches of each level; `triangles` as the device counted them, if it did.
-    pub fn new(
-        frame: i32,
-        session: &Session,
-        report: &SubmitReport,
-        wall_ms: f64,
-        counts: &[PatchCounts],
-        triangles: Option<u64>,
-    ) -> Self {
-        let last_level = session.surface.tables().last_level;
-        let is_fas = session.surface.desc().method == SurfaceMethod::Fas;
-        let is_cut_short = is_fas && session.tess_factor > (last_level as f32).exp2();
+    /// Of a frame that was drawn into an image.
+    pub fn drawn(frame: i32, session: &Session, drawn: &Drawn) -> Self {
+        Self::new(frame, session, drawn, drawn_triangle_count(&drawn.report).unwrap_or(0))
+    }
+
+    /// Of a frame of so many triangles.
+    pub fn new(frame: i32, session: &Session, drawn: &Drawn, triangles: u64) -> Self {
+        let tables = session.surface.tables();
+        let level_count = tables.last_level as usize + 1;
+        let mut counts = drawn.status.patch_counts(level_count);
+        if session.surface.desc().method == SurfaceMethod::Uniform {
+            counts[level_count - 1].filling = tables.filling.len() as u32;
+        }
         let sum = |of: fn(&PatchCounts) -> u32| counts.iter().map(|level| u64::from(of(level))).sum();
-        let (quad, transition) = (sum(|level| level.filling), sum(|level| level.transition));
+        let transition = sum(|level| level.transition);
+        // Levels that no patch is of are not told, but level 0 is.
+        let count = |c: &PatchCounts| u64::from(c.regular) + u64::from(c.transition) + u64::from(c.filling);
+        let used = counts.iter().rposition(|level| count(level) > 0).map_or(1, |level| level + 1);
         Self {
             frame,
             patches: PatchStats {
                 regular: sum(|level| level.regular),
                 transition,
-                quad,
-                truncated: if is_cut_short { quad } else { 0 },
+                quad: sum(|level| level.filling),
+                truncated: u64::from(drawn.status.counts.truncated),
             },
             subpatches: transition,
-            patches_by_level: counts
-                .iter()
-                .map(|c| u64::from(c.regular) + u64::from(c.transition) + u64::from(c.filling))
-                .collect(),
-            triangles: triangles.unwrap_or_else(|| session.expected_triangle_count()),
-            gpu_ms: GpuStats::new(&report.timestamps),
-            wall_ms,
+            patches_by_level: counts[..used].iter().map(count).collect(),
+            triangles,
+            points: drawn.status.computed_points(session.surface.phases().rows.len()),
+            calls: CallStats { dispatches: drawn.calls.dispatches, draws: drawn.calls.draws },
+            gpu_ms: GpuStats::new(&drawn.report.timestamps),
+            wall_ms: drawn.wall_ms,
         }
     }
 }
 
 /// Triangles that a frame's draws sent to the rasterizer, where the device counts them.
-pub fn drawn_triangle_count(report: &SubmitReport) -> Option<u64> {
+fn drawn_triangle_count(report: &SubmitReport) -> Option<u64> {
     let counted = report.statistics.iter().filter(|(name, _)| name == "draw");
     counted.map(|(_, statistics)| statistics.clipping_invocations).reduce(|a, b| a + b)
 }
@@ -209,6 +225,7 @@ impl Stats {
 pub fn method_name(method: SurfaceMethod) -> &'static str {
     match method {
         SurfaceMethod::Fas => "fas",
+        SurfaceMethod::Dfas => "dfas",
         SurfaceMethod::Uniform => "uniform",
     }
 }
@@ -278,8 +295,17 @@ mod tests {
         assert_eq!(keys(&json["preprocess_ms"]), ["load", "pipelines", "tables", "topology", "upload"]);
         assert_eq!(keys(&json["memory_bytes"]), ["images", "lists", "points", "tables"]);
         let frame = &json["frames"][0];
-        let expected =
-            sorted(vec!["frame", "patches", "subpatches", "patches_by_level", "triangles", "gpu_ms", "wall_ms"]);
+        let expected = sorted(vec![
+            "frame",
+            "patches",
+            "subpatches",
+            "patches_by_level",
+            "triangles",
+            "points",
+            "calls",
+            "gpu_ms",
+            "wall_ms",
+        ]);
         assert_eq!(keys(frame), expected);
         assert_eq!(keys(&frame["patches"]), ["quad", "regular", "transition", "truncated"]);
         assert_eq!(keys(&frame["gpu_ms"]), ["density", "draw", "emit", "limit", "select", "subdivide", "total"]);

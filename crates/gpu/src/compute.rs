@@ -75,6 +75,7 @@ impl Encoder {
     fn dispatch(&mut self, pipeline: &ComputePipeline, push: &[u8], dispatch: &Dispatch<'_>) {
         self.begin_label(pipeline.name());
         self.bind(vk::PipelineBindPoint::COMPUTE, &pipeline.program, push);
+        self.calls.dispatches += 1;
         let vulkan = &self.commands.device.raw;
         match *dispatch {
             Dispatch::Threads(threads) => {

@@ -176,6 +176,7 @@ impl Encoder {
     }
 
     pub(crate) fn record_draw(&mut self, draw: Draw<'_>) {
+        self.calls.draws += 1;
         let commands = self.commands.raw;
         let vulkan = &self.commands.device.raw;
         match draw {

@@ -27,7 +27,17 @@ pub struct Encoder {
     pub(crate) rendering: Option<TargetFormats>,
     pub(crate) queries: Queries,
     pub(crate) statistics_open: Option<u32>,
+    pub(crate) calls: Calls,
     kept: Vec<Kept>,
+}
+
+/// How many commands of each kind a recording has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Calls {
+    /// Dispatches, direct and indirect.
+    pub dispatches: u32,
+    /// Draws, direct and indirect: an indirect one counts once, however many it draws.
+    pub draws: u32,
 }
 
 type Kept = Arc<dyn Any + Send + Sync>;
@@ -37,6 +47,7 @@ pub struct Recorded {
     pub(crate) commands: Commands,
     pub(crate) queries: Queries,
     pub(crate) fence: vk::Fence,
+    calls: Calls,
     /// What the commands use.
     _kept: Vec<Kept>,
 }
@@ -76,6 +87,14 @@ impl Drop for Commands {
     }
 }
 
+impl Recorded {
+    /// How many commands were recorded.
+    #[must_use]
+    pub fn calls(&self) -> Calls {
+        self.calls
+    }
+}
+
 impl Drop for Recorded {
     fn drop(&mut self) {
         let fence = self.fence;
@@ -106,6 +125,7 @@ impl Encoder {
             rendering: None,
             queries,
             statistics_open: None,
+            calls: Calls::default(),
             kept: Vec::new(),
         })
     }
@@ -127,7 +147,8 @@ impl Encoder {
         // SAFETY: the device lives.
         let fence = unsafe { device.raw.create_fence(&vk::FenceCreateInfo::default(), None) }
             .map_err(Error::vulkan("vkCreateFence", &self.commands.name))?;
-        Ok(Recorded { commands: self.commands, queries: self.queries, fence, _kept: self.kept })
+        let Self { commands, queries, calls, kept, .. } = self;
+        Ok(Recorded { commands, queries, fence, calls, _kept: kept })
     }
 
     /// Keeps a buffer alive as long as the recording. Buffers given to a command are kept anyway; those that shaders

@@ -52,7 +52,7 @@ pub use compute::{DispatchArguments, MAX_GROUPS, groups_for};
 pub use compute_pipeline::{ComputePipeline, ComputePipelineDesc};
 pub use device::{Device, DeviceOptions};
 pub use draw::{Clear, ColorTarget, DepthTarget, Draw, DrawArguments, RenderTargets};
-pub use encoder::{Encoder, Recorded};
+pub use encoder::{Calls, Encoder, Recorded};
 pub use error::{Error, Result};
 pub use facts::{ApiVersion, DeviceFacts, DeviceKind, DeviceReport, NEEDED_VERSION, select_device};
 pub use features::Feature;

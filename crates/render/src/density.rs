@@ -1,70 +1,161 @@
-//! How finely to tessellate, and so how deep to refine.
+//! The density stage: how finely to tessellate at each vertex of each object's cage. Shader: `glsl/density.comp`; rings of
+//! vertices follow in `glsl/density_rings.comp` (twin: [`planish_subdiv::selection::density_rings`]).
 
-use glam::DVec3;
+use planish_shaders::{FrameInput, Object};
 use planish_subdiv::ControlMesh;
-use planish_subdiv::tables::Tables;
+use planish_subdiv::tables::{MeshRanges, Tables};
 
 use crate::camera::FrameCamera;
 use crate::error::Error;
-use crate::options::{Density, Spacing};
+use crate::objects::{ObjectDesc, columns, largest_edge, to_world};
+use crate::options::{Density, FrameOptions, Selection};
+use crate::visibility::{dot, point_outside_planes, sub};
 
-/// Levels that a patch can have, and one more for the finer side of an edge; `FACTOR_COUNT` in glsl/shared/frame.glsl.
-pub const FACTOR_COUNT: usize = 17;
+/// Densities are at most this; `MAX_DENSITY` of the shader.
+pub const MAX_DENSITY: f32 = 16000.0;
+/// Up to this density no patch is cut: both halves of an edge have 31 segments at most, whatever the spacing.
+pub const MAX_UNCUT_DENSITY: f32 = 62.0;
+/// `LEAST_DISTANCE` of the shader.
+const LEAST_DISTANCE: f32 = 0.25;
 
-/// In fractional-odd spacing the two halves of an edge beside a split face take 2 x 33 > 64 segments for factors above
-/// 31: one level down they are held there.
-const MAX_ODD_HALF_FACTOR: f32 = 31.0;
+/// The deepest level that a density refines to: the factor halves with each, and is 1 at the last (FAS section 4.1).
+pub fn isolation_level(density: f32, max_level: u32) -> u32 {
+    let level = (0..=max_level).find(|&k| density <= (k as f32).exp2());
+    level.unwrap_or(max_level)
+}
 
-/// The tess factor of every base edge.
-///
-/// With [`Density::EdgePixels`] it is the projected diameter of the largest base edge's bounding sphere over the
-/// pixels asked for, one factor for the whole mesh.
-pub fn tess_factor(mesh: &ControlMesh, camera: &FrameCamera, density: Density) -> Result<f32, Error> {
-    let factor = match density {
-        Density::Tess(factor) if factor >= 1.0 && factor.is_finite() => return Ok(factor),
+/// What the kernels need to know of a frame.
+pub fn frame_input(
+    camera: &FrameCamera,
+    options: &FrameOptions,
+    max_level: u32,
+    object_count: u32,
+    sub_pixel_bits: u32,
+) -> Result<FrameInput, Error> {
+    let (edge_scale, density) = match options.density {
+        Density::Tess(factor) if factor >= 1.0 && factor.is_finite() => (0.0, factor.min(MAX_DENSITY)),
         Density::Tess(factor) => return Err(Error::TessFactor { factor }),
         Density::EdgePixels(pixels) if pixels > 0.0 && pixels.is_finite() => {
-            (largest_projected_edge(mesh, camera) / f64::from(pixels)) as f32
+            (camera.projection.y_axis.y.abs() * camera.size[1] as f32 / pixels, 0.0)
         }
         Density::EdgePixels(pixels) => return Err(Error::EdgePixels { pixels }),
     };
-    if factor.is_finite() { Ok(factor.max(1.0)) } else { Err(Error::CameraInMesh) }
+    // The corner of the image lies at (1 / p_x, 1 / p_y) at depth 1.
+    let [x, y] = [camera.projection.x_axis.x, camera.projection.y_axis.y].map(f64::from);
+    let least_cosine = 1.0 / (1.0 + 1.0 / (x * x) + 1.0 / (y * y)).sqrt();
+    Ok(FrameInput {
+        view: crate::emit::emit_view(camera, options.culling, sub_pixel_bits),
+        edge_scale,
+        density,
+        least_cosine: least_cosine as f32,
+        selection: match options.selection {
+            Selection::Dynamic => 0,
+            Selection::Static => 1,
+        },
+        max_level,
+        object_lod: u32::from(options.object_lod),
+        object_count,
+    })
 }
 
-fn largest_projected_edge(mesh: &ControlMesh, camera: &FrameCamera) -> f64 {
-    let at = |vertex: u32| DVec3::from(mesh.positions[vertex as usize].map(f64::from));
-    let mut first = 0;
-    let mut largest = 0.0_f64;
+/// A bound on the densities of a frame of these objects: the largest of an edge; a vertex has the mean of its edges'.
+pub fn largest_density(
+    meshes: &[&ControlMesh],
+    objects: &[ObjectDesc],
+    camera: &FrameCamera,
+    options: &FrameOptions,
+) -> Result<f32, Error> {
+    // Nothing of it depends on levels, on the number of objects or on the grid of pixels.
+    let frame = frame_input(camera, options, 0, 0, 0)?;
+    let mut largest = 0.0_f32;
+    for desc in objects {
+        let mesh = meshes[desc.mesh];
+        let scale = mesh.density.iter().copied().reduce(f32::max).unwrap_or(1.0);
+        let density = if frame.density > 0.0 {
+            frame.density
+        } else {
+            largest_edge_density(mesh, desc, &frame, options.object_lod)
+        };
+        largest = largest.max(bounded(density * scale));
+    }
+    Ok(largest)
+}
+
+fn largest_edge_density(mesh: &ControlMesh, desc: &ObjectDesc, frame: &FrameInput, object_lod: bool) -> f32 {
+    let object = Object { to_world: columns(&desc.to_world), ..Object::default() };
+    if object_lod {
+        let [low, high] = mesh.bounding_box().unwrap_or_default();
+        let centre = std::array::from_fn(|c| 0.5 * (low[c] + high[c]));
+        let radius = 0.5 * largest_edge(mesh, &desc.to_world);
+        return bounded(sphere_density(frame, to_world(&object, centre), radius));
+    }
+    let at = |vertex: u32| to_world(&object, mesh.positions[vertex as usize]);
+    let (mut first, mut largest) = (0, 0.0_f32);
     for &sides in &mesh.face_sizes {
         let face = &mesh.face_vertices[first..first + sides as usize];
         first += sides as usize;
-        for (i, &a) in face.iter().enumerate() {
-            let (a, b) = (at(a), at(face[(i + 1) % face.len()]));
-            largest = largest.max(camera.projected_diameter((0.5 * (a + b)).as_vec3(), 0.5 * a.distance(b)));
+        for (i, &vertex) in face.iter().enumerate() {
+            largest = largest.max(edge_density(frame, at(vertex), at(face[(i + 1) % face.len()])));
         }
     }
     largest
 }
 
-/// The level that irregularities are isolated to: the factor halves with each, and is 1 at the last (FAS section 4.1).
-pub fn isolation_level(tess_factor: f32, max_level: u32) -> u32 {
-    let level = (0..=max_level).find(|&k| tess_factor <= (k as f32).exp2());
-    level.unwrap_or(max_level)
+fn edge_density(frame: &FrameInput, a: [f32; 3], b: [f32; 3]) -> f32 {
+    let centre = std::array::from_fn(|c| 0.5 * (a[c] + b[c]));
+    let edge = sub(b, a);
+    bounded(sphere_density(frame, centre, 0.5 * dot(edge, edge).sqrt()))
 }
 
-/// The factor of each level, max(1, t / 2^k); refused where a patch would be asked for more than the spacing allows.
-pub fn level_factors(tess_factor: f32, spacing: Spacing, tables: &Tables) -> Result<[f32; FACTOR_COUNT], Error> {
-    let mut factors: [f32; FACTOR_COUNT] = std::array::from_fn(|k| (tess_factor / (k as f32).exp2()).max(1.0));
-    let coarsest = tables.counts.iter().position(|counts| counts.regular + counts.transition > 0);
-    if let Some(level) = coarsest {
-        if factors[level] > spacing.max_factor() {
-            return Err(Error::FactorTooLarge { factor: factors[level], max: spacing.max_factor() });
+fn bounded(density: f32) -> f32 {
+    if density > 0.0 { density.min(MAX_DENSITY) } else { 0.0 }
+}
+
+fn sphere_density(frame: &FrameInput, centre: [f32; 3], radius: f32) -> f32 {
+    let d = sub(centre, frame.view.eye);
+    let distance = dot(d, d).sqrt();
+    let depth = dot(frame.view.clip_w, d);
+    let beside = frame.least_cosine * distance;
+    let nearest = LEAST_DISTANCE * radius;
+    let away = depth.max(beside).max(nearest);
+    let behind = depth / radius + 2.0;
+    let fade = behind.clamp(0.0, 1.0);
+    ((radius * frame.edge_scale) / away) * fade
+}
+
+/// CPU twin: density at each vertex of an object's cage, and the planes of the view that the vertex lies outside of, bit for bit
+/// as the shader finds them. `cage` are the points of all cages.
+pub fn density(
+    tables: &Tables,
+    mesh: &MeshRanges,
+    scales: &[f32],
+    object: &Object,
+    frame: &FrameInput,
+    cage: &[[f32; 3]],
+) -> (Vec<f32>, Vec<u32>) {
+    let at = |vertex: u32| to_world(object, cage[(object.first_point + vertex) as usize]);
+    let of = |vertex: u32| {
+        if frame.density > 0.0 {
+            return frame.density;
         }
-        if spacing == Spacing::FractionalOdd {
-            factors[level + 1..].iter_mut().for_each(|f| *f = f.min(MAX_ODD_HALF_FACTOR));
+        if frame.object_lod != 0 {
+            let centre = std::array::from_fn(|c| 0.5 * (object.low[c] + object.high[c]));
+            return sphere_density(frame, to_world(object, centre), 0.5 * object.largest_edge);
         }
-    }
-    Ok(factors)
+        let a = at(vertex);
+        let slot = mesh.slots.start + vertex;
+        let neighbours = tables.slots.neighbours.of(slot);
+        let sum = neighbours.iter().fold(0.0, |sum: f32, &other| sum + edge_density(frame, a, at(other)));
+        sum / neighbours.len().max(1) as f32
+    };
+    let vertices = 0..object.vertex_count;
+    let densities =
+        vertices.clone().map(|vertex| bounded(of(vertex) * scales[(object.first_point + vertex) as usize])).collect();
+    let outside = |vertex: u32| match frame.view.cull {
+        0 => 0,
+        _ => point_outside_planes(at(vertex), &frame.view, object.displacement),
+    };
+    (densities, vertices.map(outside).collect())
 }
 
 #[cfg(test)]

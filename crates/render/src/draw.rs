@@ -1,13 +1,13 @@
-//! The draw stage: the passes of a frame into images, after the emit stage if there is one.
+//! The draw stage: the passes of a frame into images, after the stages of [`crate::FrameStages`].
 
 use planish_gpu::{Device, Draw, DrawArguments, Encoder, Feature, GraphicsPipeline};
+use planish_shaders::DrawHead;
 
 use crate::camera::FrameCamera;
-use crate::emit::Emit;
 use crate::error::Error;
-use crate::frame::FrameConstants;
-use crate::lists::PatchKind;
-use crate::options::{SurfaceMethod, View};
+use crate::frame::draw_push;
+use crate::lists::{PatchKind, draw_arguments};
+use crate::options::{FrameNeeds, SurfaceMethod, View};
 use crate::pipelines::{Output, PipelineOptions, pipelines};
 use crate::surface::{Surface, SurfaceDesc};
 use crate::targets::Targets;
@@ -19,10 +19,8 @@ pub struct DrawOptions {
     pub view: View,
     /// Draw all layers, not only the colour.
     pub layers: bool,
-    /// Leave out triangles that show their back: for closed, opaque meshes.
+    /// Leave out triangles that show their back: where all objects hide theirs.
     pub cull_back: bool,
-    /// Leave out patches that cannot be seen before they are tessellated: the emit stage, which the uniform method lacks.
-    pub emit: bool,
 }
 
 impl DrawOptions {
@@ -34,61 +32,49 @@ impl DrawOptions {
 
 /// The passes that draw a surface into images.
 pub struct DrawPasses {
-    emit: Option<Emit>,
     fill: Vec<(PatchKind, GraphicsPipeline)>,
     wire: Vec<(PatchKind, GraphicsPipeline)>,
+    is_software: bool,
 }
 
 impl DrawPasses {
     /// Makes the pipelines for surfaces that are made so.
-    pub fn new(device: &Device, surface: &SurfaceDesc, options: &DrawOptions) -> Result<Self, Error> {
+    pub fn new(
+        device: &Device,
+        surface: &SurfaceDesc,
+        needs: &FrameNeeds,
+        options: &DrawOptions,
+    ) -> Result<Self, Error> {
         let is_wire = options.view == View::Wire;
         if is_wire && !device.has(Feature::FillModeNonSolid) {
             return Err(Error::NoLines { device: device.name().to_owned() });
         }
         let fill = PipelineOptions {
             method: surface.method,
-            spacing: surface.spacing,
+            spacing: needs.spacing,
             output: if options.needs_layers() { Output::Layers } else { Output::Lean },
             view: options.view,
             cull_back: options.cull_back,
             wire: false,
             creases: surface.has_creased_patches(),
+            cuts: needs.cuts,
         };
         let wire = PipelineOptions { wire: true, ..fill };
-        let has_emit = options.emit && surface.method == SurfaceMethod::Fas;
         Ok(Self {
-            emit: has_emit.then(|| Emit::new(device, surface, options)).transpose()?,
             fill: pipelines(device, &fill)?,
             wire: if is_wire { pipelines(device, &wire)? } else { Vec::new() },
+            is_software: device.is_software() && device.has(Feature::DrawIndirectCount),
         })
     }
 
-    /// Whether there is an emit stage.
-    pub fn has_emit(&self) -> bool {
-        self.emit.is_some()
-    }
-
-    /// Records the passes, drawn indirectly from the surface's lists, or from what the emit stage makes of them; the points
-    /// must have been made. Takes the times `emit`, with such a stage, and `draw`, and the statistics `draw`. The camera is
-    /// recorded with the draws.
-    pub fn record(
-        &self,
-        encoder: &mut Encoder,
-        surface: &Surface,
-        frame: &FrameConstants,
-        camera: &FrameCamera,
-        targets: &Targets,
-    ) {
-        encoder.keep(frame.buffer());
-        if let Some(emit) = &self.emit {
-            emit.record(encoder, surface, camera);
-        }
+    /// Records the passes, drawn indirectly from the lists that the stages before made: one draw a kind of patch. Takes the time
+    /// `draw` and the statistics `draw`.
+    pub fn record(&self, encoder: &mut Encoder, surface: &Surface, camera: &FrameCamera, targets: &Targets) {
         targets.render(|targets| encoder.begin_rendering(targets));
         encoder.begin_statistics("draw");
-        self.record_lists(encoder, &self.fill, surface, frame, camera);
+        self.record_lists(encoder, &self.fill, surface, camera);
         encoder.end_statistics();
-        self.record_lists(encoder, &self.wire, surface, frame, camera);
+        self.record_lists(encoder, &self.wire, surface, camera);
         encoder.end_rendering();
         encoder.timestamp("draw");
     }
@@ -98,21 +84,34 @@ impl DrawPasses {
         encoder: &mut Encoder,
         pipelines: &[(PatchKind, GraphicsPipeline)],
         surface: &Surface,
-        frame: &FrameConstants,
         camera: &FrameCamera,
     ) {
-        let buffers = &surface.buffers;
-        let (list, arguments) = match self.emit {
-            Some(_) => (&buffers.visible_list, &buffers.visible_draws),
-            None => (&buffers.list, &buffers.draws),
-        };
+        let lists = &surface.lists;
+        let heads = surface.capacities().draw_heads();
+        let stride = size_of::<DrawArguments>() as u32;
         for (kind, pipeline) in pipelines {
-            let push = frame.push(surface, *kind, list, surface.lists.ranges[*kind as usize].start, camera);
-            let stride = size_of::<DrawArguments>() as u32;
-            let draws = surface.batches.ranges[*kind as usize].clone();
-            let offset = u64::from(draws.start) * u64::from(stride);
-            let draw_count = draws.len() as u32;
-            encoder.draw(pipeline, &push, Draw::Indirect { arguments, offset, draw_count, stride });
+            let head = &heads[*kind as usize];
+            let push = draw_push(surface, *kind, head.first, camera);
+            if surface.desc.method == SurfaceMethod::Uniform {
+                let quads = draw_arguments(0, surface.tables.filling.len() as u32, surface.desc.method, false);
+                let (vertex_count, instance_count) = (quads.vertex_count, quads.instance_count);
+                encoder.draw(pipeline, &push, Draw::Direct { vertex_count, instance_count });
+                continue;
+            }
+            let head_offset = (*kind as usize * size_of::<DrawHead>()) as u64;
+            let draw = if self.is_software {
+                Draw::IndirectCount {
+                    arguments: &lists.draws,
+                    offset: u64::from(head.first_draw) * u64::from(stride),
+                    count: &lists.draw_heads,
+                    count_offset: head_offset + std::mem::offset_of!(DrawHead, draw_count) as u64,
+                    max_draw_count: head.draw_capacity,
+                    stride,
+                }
+            } else {
+                Draw::Indirect { arguments: &lists.draw_heads, offset: head_offset, draw_count: 1, stride }
+            };
+            encoder.draw(pipeline, &push, draw);
         }
     }
 }

@@ -10,14 +10,12 @@ use planish_gpu::{
 };
 
 use crate::camera::FrameCamera;
-use crate::density::FACTOR_COUNT;
 use crate::error::Error;
-use crate::frame::FrameConstants;
+use crate::frame::draw_push;
 use crate::lists::{PatchKind, draw_arguments};
-use crate::options::{Spacing, SurfaceMethod, View};
+use crate::options::{FrameNeeds, SurfaceMethod, View};
 use crate::pipelines::{Output, PipelineOptions, pipelines};
 use crate::surface::{Surface, SurfaceDesc};
-use crate::tessellation::{filling_triangle_count, patch_triangle_count};
 
 /// Bytes that are captured at once.
 const CAPTURE_BYTES: u64 = 64 << 20;
@@ -47,8 +45,6 @@ pub struct CapturedVertex {
 /// The passes that capture a surface.
 pub struct DumpPasses {
     pipelines: Vec<(PatchKind, GraphicsPipeline)>,
-    method: SurfaceMethod,
-    spacing: Spacing,
     capture: Buffer,
     read_back: Buffer,
     counter: Buffer,
@@ -57,25 +53,23 @@ pub struct DumpPasses {
 
 impl DumpPasses {
     /// Makes pipelines and buffers; fails on a device without transform feedback.
-    pub fn new(device: &Device, surface: &SurfaceDesc) -> Result<Self, Error> {
-        let SurfaceDesc { method, spacing, .. } = *surface;
+    pub fn new(device: &Device, surface: &SurfaceDesc, needs: &FrameNeeds) -> Result<Self, Error> {
         if !device.has(Feature::TransformFeedback) {
             return Err(Error::NoTransformFeedback { device: device.name().to_owned() });
         }
         let options = PipelineOptions {
-            method,
-            spacing,
+            method: surface.method,
+            spacing: needs.spacing,
             output: Output::Dump,
             view: View::Shaded,
             cull_back: false,
             wire: false,
             creases: surface.has_creased_patches(),
+            cuts: needs.cuts,
         };
         let buffer = |name, kind, size| Buffer::new(device, &BufferDesc { name, kind, size });
         Ok(Self {
             pipelines: pipelines(device, &options)?,
-            method,
-            spacing,
             capture: buffer("capture", BufferKind::Device, CAPTURE_BYTES)?,
             read_back: buffer("captured", BufferKind::Readback, CAPTURE_BYTES)?,
             counter: buffer("capture counter", BufferKind::Device, 4)?,
@@ -83,22 +77,19 @@ impl DumpPasses {
         })
     }
 
-    /// Captures all triangles, list by list, and hands them out in parts of whole triangles. The points must have been
-    /// made by a submitted frame, with the same factors set.
+    /// Captures all triangles, list by list, and hands them out in parts of whole triangles: what the frame that was submitted
+    /// last listed.
     pub fn capture<E: From<Error>>(
         &self,
         device: &Device,
         surface: &Surface,
-        frame: &FrameConstants,
-        factors: &[f32; FACTOR_COUNT],
         mut sink: impl FnMut(&[CapturedVertex]) -> Result<(), E>,
     ) -> Result<(), E> {
         for pass in &self.pipelines {
-            let range = surface.lists.ranges[pass.0 as usize].clone();
-            let mut first = range.start;
-            while first < range.end {
-                let (count, triangles) = self.part(surface, pass.0, first, range.end, factors);
-                let vertices = self.capture_part(device, surface, frame, pass, first, count, triangles)?;
+            let (mut first, triangles) = triangles_of(device, surface, pass.0)?;
+            for part in parts(&triangles) {
+                let count = part.len() as u32;
+                let vertices = self.capture_part(device, surface, pass, first, count, part.iter().sum())?;
                 sink(&vertices)?;
                 first += count;
             }
@@ -106,44 +97,21 @@ impl DumpPasses {
         Ok(())
     }
 
-    /// How many list entries from `first` on fit the buffer, and their triangles.
-    fn part(
-        &self,
-        surface: &Surface,
-        kind: PatchKind,
-        first: u32,
-        end: u32,
-        factors: &[f32; FACTOR_COUNT],
-    ) -> (u32, u64) {
-        let (mut count, mut triangles) = (0, 0);
-        for &entry in &surface.lists.entries[first as usize..end as usize] {
-            let more = match kind {
-                PatchKind::Filling => filling_triangle_count(self.method, self.spacing),
-                _ => patch_triangle_count(&surface.tables.patches[entry as usize].info, factors, self.spacing),
-            };
-            if 3 * (triangles + more) > CAPTURE_VERTICES {
-                break;
-            }
-            count += 1;
-            triangles += more;
-        }
-        (count, triangles)
-    }
-
-    #[expect(clippy::too_many_arguments, reason = "one part is one place in one list of one surface")]
     fn capture_part(
         &self,
         device: &Device,
         surface: &Surface,
-        frame: &FrameConstants,
         (kind, pipeline): &(PatchKind, GraphicsPipeline),
         first: u32,
         count: u32,
         triangles: u64,
     ) -> Result<Vec<CapturedVertex>, Error> {
-        let arguments = draw_arguments(0, count, self.method, device.is_software());
+        // Uniform quads are found by their vertices, other patches by their place in the list.
+        let is_uniform = surface.desc.method == SurfaceMethod::Uniform;
+        let first_drawn = if is_uniform { first } else { 0 };
+        let arguments = draw_arguments(first_drawn, count, surface.desc.method, device.is_software());
         self.arguments.write(0, &[arguments])?;
-        let push = frame.push(surface, *kind, &surface.buffers.list, first, &NO_CAMERA);
+        let push = draw_push(surface, *kind, if is_uniform { 0 } else { first }, &NO_CAMERA);
         let mut encoder = Encoder::new(device, "dump")?;
         let feedback = Feedback { name: "dump", targets: &[&self.capture], counters: &self.counter };
         let stride = size_of::<DrawArguments>() as u32;
@@ -159,4 +127,39 @@ impl DumpPasses {
         }
         Ok(self.read_back.read(0, 3 * triangles as usize)?)
     }
+}
+
+/// How many triangles a dump of what the frame that was submitted last listed has; waits for the device.
+pub fn listed_triangle_count(device: &Device, surface: &Surface) -> Result<u64, Error> {
+    let kinds: &[PatchKind] = match surface.desc.method {
+        SurfaceMethod::Uniform => &[PatchKind::Filling],
+        SurfaceMethod::Fas | SurfaceMethod::Dfas => &PatchKind::ALL,
+    };
+    kinds.iter().map(|&kind| Ok(triangles_of(device, surface, kind)?.1.iter().sum::<u64>())).sum()
+}
+
+/// Where the entries of a kind begin that the last frame listed, and how many triangles are made of each.
+fn triangles_of(device: &Device, surface: &Surface, kind: PatchKind) -> Result<(u32, Vec<u64>), Error> {
+    if surface.desc.method == SurfaceMethod::Uniform {
+        return Ok((0, vec![2; surface.tables.filling.len()]));
+    }
+    let head = surface.status()?.draw_heads[kind as usize];
+    let entries = surface.download_entries(device, head.first..head.first + head.count.min(head.capacity))?;
+    Ok((head.first, entries.iter().map(|entry| u64::from(entry.triangles)).collect()))
+}
+
+/// Runs of entries whose triangles fit the buffer.
+fn parts(triangles: &[u64]) -> Vec<&[u64]> {
+    let (mut parts, mut first, mut sum) = (Vec::new(), 0, 0);
+    for (i, &count) in triangles.iter().enumerate() {
+        if 3 * (sum + count) > CAPTURE_VERTICES {
+            parts.push(&triangles[first..i]);
+            (first, sum) = (i, 0);
+        }
+        sum += count;
+    }
+    if first < triangles.len() {
+        parts.push(&triangles[first..]);
+    }
+    parts
 }

@@ -23,11 +23,10 @@ impl EditPoints {
 
     /// Records one dispatch over a level's edits.
     pub(crate) fn record(&self, encoder: &mut Encoder, surface: &Surface, edits: Range<u32>) {
-        let buffers = &surface.buffers;
         let push = Push {
-            points: address(&buffers.points),
-            targets: address(&buffers.edit_targets),
-            offsets: address(&buffers.edit_offsets),
+            points: address(&surface.frame.points),
+            targets: address(&surface.buffers.edit_targets),
+            offsets: address(&surface.frame.edit_offsets),
             first_edit: edits.start,
             edit_count: edits.len() as u32,
         };

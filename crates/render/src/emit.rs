@@ -1,108 +1,75 @@
-//! The emit stage: which patches may be seen, batch by batch. Shader: `glsl/emit.comp`.
-//!
-//! The lists and draws of the surface are its source. One group of threads takes one batch, and writes the patches of it
-//! that [`crate::visibility`] does not leave out, in order, to the same places of a second list, and their number to a second
-//! draw. So the result depends on no order of groups, and a batch never grows.
+//! The emit stage: which patches are drawn, in how many pieces, and the draws of them. Shaders: `glsl/emit.comp`, and
+//! `glsl/finish_lists.comp`, which closes the lists.
 
-use planish_gpu::{ComputePipeline, Device, DrawArguments, Encoder, SpecConstant};
-use planish_shaders::emit_bspline_comp::{LOCAL_SIZE, Push, SPEC_LOCAL_SIZE_X, SPEC_MAX_BATCH};
-use planish_shaders::{
-    EmitCounts, EmitLevel, EmitView, Indices, LimitPoint, emit_bspline_comp, emit_corners_comp, emit_midpoints_comp,
-};
+use planish_gpu::{ComputePipeline, Device, Encoder, SpecConstant};
+use planish_shaders as shaders;
+use planish_shaders::{DrawEntry, EmitPush, EmitView, LimitPoint, Object};
 use planish_subdiv::patch::RegularPatch;
-use planish_subdiv::tables::{PatchCounts, Tables};
+use planish_subdiv::selection::{Cut, density_at};
+use planish_subdiv::tables::{MeshRanges, Tables};
+use planish_subdiv::topology::NONE;
 
 use crate::camera::FrameCamera;
-use crate::density::FACTOR_COUNT;
-use crate::draw::DrawOptions;
 use crate::error::Error;
-use crate::lists::{Batches, Lists, MAX_BATCH, PatchKind};
-use crate::options::Spacing;
-use crate::program::specialized_compute_pipeline;
-use crate::surface::{Surface, SurfaceDesc};
-use crate::tessellation::emit_level;
+use crate::factors::{Grain, PatchFactors, triangle_count};
+use crate::lists::{LIST_BASE, LIST_CUT, LIST_LEAVES, LIST_PATCHES, PatchKind};
+use crate::objects::to_world;
+use crate::options::{Culling, FrameNeeds, Spacing};
+use crate::program::{compute_pipeline, specialized_compute_pipeline};
+use crate::select::head_offset;
+use crate::surface::Surface;
 use crate::upload::address;
-use crate::visibility::{are_quads_unseen, is_patch_unseen};
+use crate::visibility::{bezier_part, bezier_patch, is_patch_unseen, is_quad_unseen};
 
-/// Levels that a patch can have; `LEVEL_COUNT` of the shaders, from their array of that length.
-const LEVEL_COUNT: usize = size_of::<EmitCounts>() / size_of::<u32>();
-const _: () = assert!(LEVEL_COUNT + 1 == FACTOR_COUNT);
-
-/// Threads of a group on a software driver: as many as one of its vectors has lanes. Batches there are small, and idle
-/// threads are not free.
-const SOFTWARE_LOCAL_SIZE: u32 = 8;
+/// Vertices that a draw should generate on a software driver: on Mesa 22.3's, larger batches cost more by their square,
+/// smaller ones by their number (`planish bench --tess`).
+const BATCH_VERTICES: u32 = 512;
+const GROUP: u32 = 64;
 
 /// The stage's programs.
 pub(crate) struct Emit {
-    bspline: ComputePipeline,
-    filling: ComputePipeline,
-    local_size: u32,
-    cull_back: bool,
-    sub_pixel_bits: u32,
+    patches: ComputePipeline,
+    leaves: ComputePipeline,
+    cut: Option<ComputePipeline>,
+    finish: ComputePipeline,
 }
 
 impl Emit {
-    pub(crate) fn new(device: &Device, surface: &SurfaceDesc, options: &DrawOptions) -> Result<Self, Error> {
-        let local_size = if device.is_software() { SOFTWARE_LOCAL_SIZE } else { LOCAL_SIZE[0] };
+    pub fn new(device: &Device, needs: &FrameNeeds) -> Result<Self, Error> {
+        let batch = if device.is_software() { BATCH_VERTICES } else { 0 };
         let spec = [
-            SpecConstant { id: SPEC_MAX_BATCH, bits: MAX_BATCH },
-            SpecConstant { id: SPEC_LOCAL_SIZE_X, bits: local_size },
+            SpecConstant { id: shaders::emit_patches_comp::SPEC_SPACING, bits: needs.spacing.constant() },
+            SpecConstant { id: shaders::emit_patches_comp::SPEC_BATCH_VERTICES, bits: batch },
+            SpecConstant { id: shaders::emit_patches_comp::SPEC_CULL, bits: u32::from(needs.culls) },
         ];
-        let filling = match surface.spacing {
-            Spacing::FractionalEven => &emit_midpoints_comp::PROGRAM,
-            Spacing::Equal | Spacing::FractionalOdd => &emit_corners_comp::PROGRAM,
-        };
+        let pipeline = |module| specialized_compute_pipeline(device, module, GROUP, &spec);
         Ok(Self {
-            bspline: specialized_compute_pipeline(device, &emit_bspline_comp::PROGRAM, local_size, &spec)?,
-            filling: specialized_compute_pipeline(device, filling, local_size, &spec)?,
-            local_size,
-            cull_back: options.cull_back,
-            sub_pixel_bits: device.limits().sub_pixel_bits,
+            patches: pipeline(&shaders::emit_patches_comp::PROGRAM)?,
+            leaves: pipeline(&shaders::emit_leaves_comp::PROGRAM)?,
+            cut: if needs.cuts { Some(pipeline(&shaders::emit_cut_comp::PROGRAM)?) } else { None },
+            finish: compute_pipeline(device, &shaders::finish_lists_comp::PROGRAM)?,
         })
     }
 
-    /// Records one dispatch a kind, side by side. Takes the time `emit`.
-    pub(crate) fn record(&self, encoder: &mut Encoder, surface: &Surface, camera: &FrameCamera) {
-        let view = emit_view(camera, self.cull_back, self.sub_pixel_bits);
-        let mut is_first = true;
-        for kind in PatchKind::ALL {
-            let push = push(surface, kind, view);
-            if push.batch_count == 0 {
-                continue;
-            }
-            let pipeline = if kind == PatchKind::Filling { &self.filling } else { &self.bspline };
-            let threads = push.batch_count * self.local_size;
-            if std::mem::take(&mut is_first) {
-                encoder.compute(pipeline, &push, threads);
-            } else {
-                encoder.compute_more(pipeline, &push, threads);
-            }
+    /// Records the stage: five dispatches. Takes the time `emit`.
+    pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
+        let scene = address(&surface.frame.scene);
+        let heads = &surface.lists.heads;
+        let push = |list: usize| EmitPush { scene, list: list as u32, ..EmitPush::default() };
+        encoder.compute_indirect(&self.patches, &push(LIST_BASE), heads, head_offset(LIST_BASE));
+        encoder.compute_indirect_more(&self.patches, &push(LIST_PATCHES), heads, head_offset(LIST_PATCHES));
+        encoder.compute_indirect_more(&self.leaves, &push(LIST_LEAVES), heads, head_offset(LIST_LEAVES));
+        if let Some(cut) = &self.cut {
+            encoder.compute_indirect(cut, &push(LIST_CUT), heads, head_offset(LIST_CUT));
         }
+        let push = shaders::finish_lists_comp::Push { heads: address(&surface.lists.draw_heads) };
+        encoder.compute(&self.finish, &push, GROUP);
         encoder.timestamp("emit");
     }
 }
 
-fn push(surface: &Surface, kind: PatchKind, view: EmitView) -> Push {
-    let buffers = &surface.buffers;
-    let (first_entry, draws) = (surface.lists.ranges[kind as usize].start, &surface.batches.ranges[kind as usize]);
-    let is_filling = kind == PatchKind::Filling;
-    Push {
-        list: address::<Indices>(&buffers.list).offset(first_entry.into()),
-        visible: address::<planish_shaders::VisibleList>(&buffers.visible_list).offset(first_entry.into()),
-        points: address(if is_filling { &buffers.limits } else { &buffers.points }),
-        patches: address(if is_filling { &buffers.quads } else { &buffers.patches }),
-        draws: address::<planish_shaders::SourceDraws>(&buffers.draws).offset(draws.start.into()),
-        visible_draws: address::<planish_shaders::VisibleDraws>(&buffers.visible_draws).offset(draws.start.into()),
-        levels: address(&buffers.emit_levels),
-        counts: address::<planish_shaders::EmitCountsOfKind>(&buffers.visible_counts).offset(kind as u64),
-        view,
-        batch_count: draws.len() as u32,
-    }
-}
-
-/// What a camera sees. Triangles that show their back are not seen if they are culled; the rasterizer rounds to
-/// `sub_pixel_bits` bits behind the point of a pixel.
-pub fn emit_view(camera: &FrameCamera, cull_back: bool, sub_pixel_bits: u32) -> EmitView {
+/// What a camera sees. The rasterizer rounds to `sub_pixel_bits` bits behind the point of a pixel.
+pub fn emit_view(camera: &FrameCamera, culling: Culling, sub_pixel_bits: u32) -> EmitView {
     let clip = camera.view_projection();
     let [dx, dy] = camera.pixel_steps();
     // To the nearest point of the grid: both coordinates move by half a step at most.
@@ -114,86 +81,128 @@ pub fn emit_view(camera: &FrameCamera, cull_back: bool, sub_pixel_bits: u32) -> 
         clip_w: clip.row(3).truncate().to_array(),
         near: camera.near(),
         snap: snap_pixels * dx.length().max(dy.length()),
-        cull_back: u32::from(cull_back),
+        cull: match culling {
+            Culling::Off => 0,
+            Culling::Unseen => 1,
+            Culling::UnseenAndBacks => 2,
+        },
     }
 }
 
-/// How the patches of each level are tessellated.
-pub(crate) fn emit_levels(tables: &Tables, factors: &[f32; FACTOR_COUNT], spacing: Spacing) -> Vec<EmitLevel> {
-    (0..LEVEL_COUNT).map(|level| emit_level(level, tables.last_level as usize, factors, spacing)).collect()
+/// What the stage makes of one object: entries of each kind, ascending.
+pub type Emitted = [Vec<DrawEntry>; 4];
+
+/// What the twin needs to know of an object.
+pub struct EmitInput<'a> {
+    /// Tables of all meshes.
+    pub tables: &'a Tables,
+    /// The object's mesh.
+    pub mesh: &'a MeshRanges,
+    /// The object, and its number.
+    pub object: (&'a Object, u32),
+    /// What was selected of it.
+    pub cut: &'a Cut,
+    /// Densities of its slots.
+    pub densities: &'a [f32],
+    /// Points of all levels.
+    pub points: &'a [[f32; 3]],
+    /// Limit points.
+    pub limits: &'a [LimitPoint],
+    /// The view.
+    pub view: &'a EmitView,
+    /// Spacing.
+    pub spacing: Spacing,
 }
 
-/// Counts by kind to counts by level.
-pub(crate) fn patch_counts(by_kind: &[EmitCounts], level_count: usize) -> Vec<PatchCounts> {
-    let of_kind = |kind: PatchKind, level: usize| by_kind[kind as usize].levels[level];
-    let of_level = |level| PatchCounts {
-        regular: of_kind(PatchKind::Regular, level),
-        transition: of_kind(PatchKind::Transition, level),
-        filling: of_kind(PatchKind::Filling, level),
+/// CPU twin: bit for bit as the shaders make it where f32 arithmetic is not fused; lists are in ascending order.
+pub fn emit(input: &EmitInput<'_>) -> Emitted {
+    let mut emitted = Emitted::default();
+    let mut is_split = vec![false; input.tables.edge_count as usize];
+    input.cut.split_edges.iter().for_each(|&edge| is_split[edge as usize] = true);
+    let split_edges = |edges: &[u32; 4]| {
+        (0..4).fold(0, |mask, i| {
+            let edge = edges[i];
+            mask | u32::from(edge != NONE && is_split[edge as usize]) << i
+        })
     };
-    (0..level_count).map(of_level).collect()
-}
-
-/// What the stage makes.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Emitted {
-    /// The lists of all kinds, as long as their source. What lies behind the end of a batch means nothing.
-    pub entries: Vec<u32>,
-    /// The draws of all kinds.
-    pub draws: Vec<DrawArguments>,
-    /// Patches that may be seen, by level.
-    pub counts: Vec<PatchCounts>,
-}
-
-/// CPU twin: bit for bit as the shader makes it where f32 arithmetic is not fused.
-pub fn emit(
-    tables: &Tables,
-    lists: &Lists,
-    batches: &Batches,
-    levels: &[EmitLevel],
-    points: &[[f32; 3]],
-    limits: &[LimitPoint],
-    view: &EmitView,
-) -> Emitted {
-    let mut emitted = Emitted {
-        entries: vec![u32::MAX; lists.entries.len()],
-        draws: Vec::new(),
-        counts: vec![PatchCounts::default(); tables.counts.len()],
-    };
-    let mut counts = [EmitCounts::default(); PatchKind::ALL.len()];
-    for kind in PatchKind::ALL {
-        let first_entry = lists.ranges[kind as usize].start as usize;
-        for batch in batches.of_kind(kind) {
-            let first = first_entry + batch.first_vertex as usize;
-            let mut end = first;
-            for &entry in &lists.entries[first..][..batch.vertex_count as usize] {
-                let (is_unseen, level) = match kind {
-                    PatchKind::Filling => is_filling_unseen(tables, entry as usize, limits, view),
-                    _ => is_regular_unseen(&tables.patches[entry as usize], levels, points, view),
-                };
-                if !is_unseen {
-                    emitted.entries[end] = entry;
-                    counts[kind as usize].levels[usize::from(level)] += 1;
-                    end += 1;
-                }
-            }
-            emitted.draws.push(DrawArguments { vertex_count: (end - first) as u32, ..*batch });
-        }
+    let patches = input.mesh.patches[0].clone().chain(input.cut.patches.iter().copied());
+    for place in patches {
+        let patch = &input.tables.patches[place as usize];
+        input.patch(place, patch, split_edges(&patch.edges), &mut emitted);
     }
-    emitted.counts = patch_counts(&counts, tables.counts.len());
+    for leaf in &input.cut.leaves {
+        let face = &input.tables.irregular[leaf.face as usize];
+        input.leaf(leaf.face, face, split_edges(&face.edges), &mut emitted);
+    }
+    for entries in &mut emitted {
+        entries.sort_by_key(|entry| (entry.place, entry.flags));
+    }
     emitted
 }
 
-/// Whether nothing can be seen of a patch, and its level.
-fn is_regular_unseen(patch: &RegularPatch, levels: &[EmitLevel], points: &[[f32; 3]], view: &EmitView) -> (bool, u8) {
-    let info = &patch.info;
-    let mut control = patch.points.map(|point| points[point as usize]);
-    reflect_points(&mut control, info.boundary);
-    let is_uneven = info.transition | info.leaf != 0;
-    // The tangents of a patch with a semi-sharp crease are not those of its control points: it is always drawn.
-    let is_unseen =
-        patch.sharpness == 0.0 && is_patch_unseen(&control, view, &levels[usize::from(info.level)], is_uneven);
-    (is_unseen, info.level)
+impl EmitInput<'_> {
+    fn is_culled(&self) -> bool {
+        self.view.cull != 0
+    }
+
+    /// OBJECT_HIDES_BACKS and not OBJECT_MIRRORED.
+    fn culls_back(&self) -> bool {
+        self.view.cull == 2 && self.object.0.flags & 6 == 2
+    }
+
+    fn entry(&self, place: u32, flags: u32, triangles: u32, factors: &PatchFactors) -> DrawEntry {
+        let PatchFactors { low, high, inner, .. } = *factors;
+        DrawEntry { place, object: self.object.1, flags, triangles, low, high, inner }
+    }
+
+    fn patch(&self, place: u32, patch: &RegularPatch, split_edges: u32, emitted: &mut Emitted) {
+        let ptex_face = self.mesh.ptex_faces.start + patch.info.location.ptex_face;
+        let corners = self.tables.ptex_faces[ptex_face as usize];
+        let density = |u, v| density_at(self.densities, corners, u, v);
+        let factors = PatchFactors::new(density, &patch.info, split_edges, self.spacing);
+        let pieces = factors.cut_count();
+        let displacement = self.object.0.displacement;
+        // The tangents of a patch with a semi-sharp crease are not those of its control points: it is always drawn.
+        let is_tested = self.is_culled() && patch.sharpness == 0.0;
+        let mut points = patch.points.map(|point| to_world(self.object.0, self.points[point as usize]));
+        reflect_points(&mut points, patch.info.boundary);
+        let bezier = bezier_patch(&points);
+        let cull_back = self.culls_back() && pieces == 1;
+        if is_tested && is_patch_unseen(&bezier, self.view, &factors.grain(), cull_back, displacement) {
+            return;
+        }
+        if pieces == 1 {
+            let kind = if split_edges == 0 { PatchKind::Regular } else { PatchKind::Transition };
+            return emitted[kind as usize].push(self.entry(place, split_edges, factors.triangle_count(), &factors));
+        }
+        for i in 0..pieces * pieces {
+            let piece = [i % pieces, i / pieces];
+            let own = factors.piece(pieces, piece);
+            let mut part = bezier;
+            bezier_part(&mut part, own.low, own.high);
+            let grain = Grain { grain: 1.0, skew: 0.0, is_uneven: false };
+            if !(is_tested && is_patch_unseen(&part, self.view, &grain, false, displacement)) {
+                let flags = split_edges | piece[0] << 4 | piece[1] << 12 | pieces << 20;
+                let triangles = triangle_count(own.counts, own.inner);
+                emitted[PatchKind::Cut as usize].push(self.entry(place, flags, triangles, &factors));
+            }
+        }
+    }
+
+    fn leaf(&self, place: u32, face: &planish_subdiv::tables::IrregularFace, split_edges: u32, emitted: &mut Emitted) {
+        let position = |limit: u32| to_world(self.object.0, self.limits[limit as usize].position);
+        let points = std::array::from_fn(|i| {
+            let is_split_middle = i >= 4 && split_edges >> (i - 4) & 1 != 0;
+            position(if is_split_middle { face.midpoints[i - 4] } else { face.limits[i % 4] })
+        });
+        let displacement = self.object.0.displacement;
+        if self.is_culled() && is_quad_unseen(&points, split_edges, self.view, self.culls_back(), displacement) {
+            return;
+        }
+        let triangles = if split_edges == 0 { 2 } else { 4 + split_edges.count_ones() };
+        let entry = DrawEntry { place, object: self.object.1, flags: split_edges, triangles, ..DrawEntry::default() };
+        emitted[PatchKind::Filling as usize].push(entry);
+    }
 }
 
 /// `reflect_points` of `glsl/shared/control_points.glsl`.
@@ -211,17 +220,4 @@ fn reflect_points(p: &mut [[f32; 3]; 16], boundary: u8) {
         set(boundary & 1 != 0, column, 4 + column, 8 + column);
         set(boundary & 4 != 0, 12 + column, 8 + column, 4 + column);
     }
-}
-
-/// Whether nothing can be seen of a filling quad, and its level.
-fn is_filling_unseen(tables: &Tables, entry: usize, limits: &[LimitPoint], view: &EmitView) -> (bool, u8) {
-    let quad = &tables.filling[entry];
-    let midpoints = tables.filling_midpoints.get(entry);
-    let places = quad.corners.iter().chain(midpoints.into_iter().flatten());
-    let points: Vec<_> = places.map(|&place| limits[place as usize].position).collect();
-    let quads: &[[usize; 4]] = match midpoints {
-        Some(_) => &[[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3]],
-        None => &[[0, 1, 2, 3]],
-    };
-    (are_quads_unseen(&points, quads, view), quad.info.level)
 }

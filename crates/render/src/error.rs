@@ -24,19 +24,6 @@ pub enum Error {
         /// The length.
         pixels: f32,
     },
-    /// The camera may be inside a base edge's bounding sphere.
-    #[error("the camera is too close to the mesh for one tess factor for all of it: move it, or use --tess")]
-    CameraInMesh,
-    /// A patch would need more segments than the tessellator makes.
-    #[error(
-        "a patch needs tess factor {factor}, but at most {max} is possible: use a larger --edge-pixels or a smaller --tess"
-    )]
-    FactorTooLarge {
-        /// The factor.
-        factor: f32,
-        /// The spacing's largest.
-        max: f32,
-    },
     /// The device cannot capture what the tessellation stages produce.
     #[error("device {device} has no VK_EXT_transform_feedback, which dump needs")]
     NoTransformFeedback {

@@ -1,61 +1,90 @@
-//! What the draws of a frame share, as the shaders read it.
+//! The stages of a frame before anything is drawn: from cages to points, limit points and draw lists.
 
-use planish_gpu::{Buffer, Device};
-use planish_shaders::{DrawPush, FrameData};
+use planish_gpu::{Device, Encoder, Transfer};
+use planish_shaders::DrawPush;
 
+use crate::buffers::keep;
 use crate::camera::FrameCamera;
-use crate::density::FACTOR_COUNT;
+use crate::emit::Emit;
 use crate::error::Error;
+use crate::limit::Limit;
 use crate::lists::PatchKind;
+use crate::options::{FrameNeeds, SurfaceMethod};
+use crate::select::Select;
+use crate::subdivide::Subdivide;
 use crate::surface::Surface;
-use crate::upload::{address, mapped};
+use crate::upload::address;
 
-/// What a frame's draws read besides their push constants: the camera's place and the densities.
-pub struct FrameConstants {
-    buffer: Buffer,
+/// The stages of a frame that make what is drawn.
+pub struct FrameStages {
+    select: Select,
+    subdivide: Subdivide,
+    limit: Limit,
+    emit: Emit,
 }
 
-impl FrameConstants {
-    /// Makes room for them, and sets them.
-    pub fn new(device: &Device, camera: &FrameCamera, factors: &[f32; FACTOR_COUNT]) -> Result<Self, Error> {
-        let constants = Self { buffer: mapped::<FrameData>(device, "frame", 1)? };
-        constants.set(camera, factors)?;
-        Ok(constants)
+impl FrameStages {
+    /// Makes the pipelines.
+    pub fn new(device: &Device, needs: &FrameNeeds) -> Result<Self, Error> {
+        Ok(Self {
+            select: Select::new(device)?,
+            subdivide: Subdivide::new(device)?,
+            limit: Limit::new(device)?,
+            emit: Emit::new(device, needs)?,
+        })
     }
 
-    /// Sets them, for all frames submitted from now on.
-    pub fn set(&self, camera: &FrameCamera, factors: &[f32; FACTOR_COUNT]) -> Result<(), Error> {
-        let data = FrameData { world_to_camera: camera.world_to_camera.to_cols_array_2d(), factors: *factors };
-        Ok(self.buffer.write(0, &[data])?)
-    }
-
-    pub(crate) fn buffer(&self) -> &Buffer {
-        &self.buffer
-    }
-
-    /// Push constants for the draw of a kind's entries of a list from `first_entry` on.
-    pub(crate) fn push(
-        &self,
-        surface: &Surface,
-        kind: PatchKind,
-        list: &Buffer,
-        first_entry: u32,
-        camera: &FrameCamera,
-    ) -> DrawPush {
-        let buffers = &surface.buffers;
-        let [dx, dy] = camera.pixel_steps();
-        let [width, height] = camera.size;
-        let is_filling = kind == PatchKind::Filling;
-        DrawPush {
-            view_projection: camera.view_projection().to_cols_array_2d(),
-            list: address::<planish_shaders::Indices>(list).offset(u64::from(first_entry)),
-            points: address(if is_filling { &buffers.limits } else { &buffers.points }),
-            patches: address(if is_filling { &buffers.quads } else { &buffers.patches }),
-            frame: address(&self.buffer),
-            ray_dx: dx.to_array(),
-            ray_dy: dy.to_array(),
-            image_size: width | height << 16,
-            first_patch_id: if is_filling { surface.tables.patches.len() as u32 } else { 0 },
+    /// Records: cages to points, density, select, subdivide, limit, emit. Takes the times `start`, `density`, `select`,
+    /// `subdivide`, `limit` and `emit`; uniform refinement has no density, select and emit. How the frame is seen, selected and
+    /// culled is what [`Surface::set_frame`] said last when it runs.
+    pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
+        keep(encoder, surface);
+        encoder.timestamp("start");
+        Select::record_start(encoder, surface);
+        let is_selected = surface.desc.method != SurfaceMethod::Uniform;
+        if is_selected {
+            self.select.record(encoder, surface);
         }
+        self.subdivide.record(encoder, surface);
+        encoder.timestamp("subdivide");
+        self.limit.record(encoder, surface);
+        encoder.timestamp("limit");
+        if is_selected {
+            self.emit.record(encoder, surface);
+        }
+    }
+
+    /// Records the copies that [`Surface::status`] and [`Surface::grow`] read: at the end of a frame.
+    pub fn record_end(encoder: &mut Encoder, surface: &Surface) {
+        let (frame, lists) = (&surface.frame, &surface.lists);
+        let copy = |from, to| Transfer::Copy { from, from_offset: 0, to, to_offset: 0, size: from.size() };
+        encoder.transfer(&[
+            copy(&lists.heads, &lists.heads_read),
+            copy(&lists.draw_heads, &lists.draw_heads_read),
+            copy(&frame.counts, &frame.counts_read),
+        ]);
+    }
+}
+
+/// Push constants for the draw of a kind's entries, from place `first_entry` among all entries on.
+pub(crate) fn draw_push(surface: &Surface, kind: PatchKind, first_entry: u32, camera: &FrameCamera) -> DrawPush {
+    let (tables, frame) = (&surface.buffers, &surface.frame);
+    let [dx, dy] = camera.pixel_steps();
+    let [width, height] = camera.size;
+    let (points, patches, first_patch_id) = match (surface.desc.method, kind) {
+        (SurfaceMethod::Uniform, _) => (&frame.limits, &tables.quads, 0),
+        (_, PatchKind::Filling) => (&frame.limits, &tables.irregular, surface.tables.patches.len() as u32),
+        _ => (&frame.points, &tables.patches, 0),
+    };
+    DrawPush {
+        view_projection: camera.view_projection().to_cols_array_2d(),
+        list: address::<planish_shaders::DrawEntries>(&surface.lists.entries).offset(first_entry.into()),
+        points: address(points),
+        patches: address(patches),
+        frame: address(&frame.data),
+        ray_dx: dx.to_array(),
+        ray_dy: dy.to_array(),
+        image_size: width | height << 16,
+        first_patch_id,
     }
 }

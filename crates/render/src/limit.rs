@@ -7,7 +7,9 @@ use planish_shaders::limit_comp::{PROGRAM, Push};
 use planish_subdiv::tables::Tables;
 
 use crate::error::Error;
+use crate::lists::LIST_PHASES;
 use crate::program::compute_pipeline;
+use crate::select::head_offset;
 use crate::surface::Surface;
 use crate::upload::address;
 
@@ -19,23 +21,25 @@ impl Limit {
         compute_pipeline(device, &PROGRAM).map(Self)
     }
 
-    /// Records one dispatch over all limit points.
+    /// Records one dispatch over all limit points in use.
     pub(crate) fn record(&self, encoder: &mut Encoder, surface: &Surface) {
-        let row_count = surface.tables.limit_point_count();
-        if row_count == 0 {
+        let phase = surface.phases.limits();
+        if surface.phases.rows[phase][1] == 0 {
             return;
         }
-        let buffers = &surface.buffers;
+        let (tables, frame, heads) = (&surface.buffers, &surface.frame, &surface.lists.heads);
+        let first_item = surface.phases.first_items()[phase];
+        let list = LIST_PHASES + phase;
         let push = Push {
-            points: address(&buffers.points),
-            limits: address(&buffers.limits),
-            rows: address(&buffers.limit_rows),
-            indices: address(&buffers.limit_indices),
-            weights: address(&buffers.limit_weights),
-            row_count,
-            ..Push::default()
+            points: address(&frame.points),
+            limits: address(&frame.limits),
+            rows: address(&tables.limit_rows),
+            indices: address(&tables.limit_indices),
+            weights: address(&tables.limit_weights),
+            in_use: address::<planish_shaders::Indices>(&frame.in_use).offset(first_item.into()),
+            head: address::<planish_shaders::ListHeads>(heads).offset(list as u64),
         };
-        encoder.compute(&self.0, &push, row_count);
+        encoder.compute_indirect(&self.0, &push, heads, head_offset(list));
     }
 }
 

@@ -1,198 +1,251 @@
-//! Render lists: which patches are drawn, and the indirect draws that draw them.
+//! Lists that the kernels append to, and how much fits.
 //!
-//! In static FAS they depend on the tables and the factors alone. A list is drawn in batches, of which the emit stage takes
-//! out the patches that cannot be seen. They have at most [`MAX_BATCH`] patches; on a software driver, whose tessellation
-//! costs the square of what one instance generates and a fixed price besides, they generate about [`BATCH_VERTICES`]
-//! vertices. The shaders add the vertex and the instance index and do not know.
-
-use std::ops::Range;
+//! Lists have room for the worst case where that is small; else for a part of it. What does not fit is counted and not
+//! written, and [`Capacities::grown`] makes room for it before the next frame.
 
 use planish_gpu::DrawArguments;
-use planish_subdiv::tables::Tables;
+use planish_shaders::{DrawHead, FrameCounts, ListHead};
+use planish_subdiv::selection::PatchCounts;
+use planish_subdiv::tables::{MeshRanges, Tables};
 
-use crate::density::FACTOR_COUNT;
-use crate::options::{Spacing, SurfaceMethod};
-use crate::tessellation::{filling_segment_count, segment_count};
+use crate::objects::ObjectDesc;
+use crate::options::SurfaceMethod;
 
-/// The kinds of patches, in the order of their lists and draws; also the `kind` of a dump.
+/// The kinds of patches, in the order of their lists and draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PatchKind {
     /// Regular patches.
     Regular,
-    /// Regular patches beside a split face.
+    /// Regular patches beside a refined face.
     Transition,
     /// Patch-filling quads.
     Filling,
+    /// Pieces of regular and transition patches that need more segments than the tessellator makes.
+    Cut,
 }
 
 impl PatchKind {
     /// All kinds.
-    pub const ALL: [Self; 3] = [Self::Regular, Self::Transition, Self::Filling];
+    pub const ALL: [Self; 4] = [Self::Regular, Self::Transition, Self::Filling, Self::Cut];
 }
 
-/// The lists of all kinds, one after another: indices into the table of patches or of filling quads.
+/// Levels that a patch can have; `LEVEL_COUNT` of the shaders.
+pub const LEVEL_COUNT: usize = 16;
+/// Numbers of lists: `LIST_..` of `glsl/shared/scene.glsl`.
+pub const LIST_VERTICES: usize = 0;
+/// Chunks of slots that are faces of other than four sides.
+pub const LIST_MIDDLES: usize = 1;
+/// Chunks of irregular faces of level 0.
+pub const LIST_ROOTS: usize = 2;
+/// Chunks of regular patches of level 0.
+pub const LIST_BASE: usize = 3;
+/// Regular patches of finer levels.
+pub const LIST_PATCHES: usize = 4;
+/// Irregular leaves.
+pub const LIST_LEAVES: usize = 5;
+/// Patches that are cut.
+pub const LIST_CUT: usize = 6;
+/// Irregular faces of a level to select from; + level.
+pub const LIST_ACTIVE: usize = 7;
+/// Rows in use; + phase. The last phase is that of limit points.
+pub const LIST_PHASES: usize = LIST_ACTIVE + LEVEL_COUNT;
+const MAX_PHASES: usize = 2 * LEVEL_COUNT + 1;
+/// Number of lists.
+pub const LIST_COUNT: usize = LIST_PHASES + MAX_PHASES;
+/// Entries of a chunk, and threads of a group.
+pub const CHUNK: u32 = 64;
+
+/// Entries that a list has room for at first, if it may have more.
+const FIRST_CAPACITY: u32 = 1 << 16;
+
+/// How much fits.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Capacities {
+    /// Chunks of each kind: the worst case.
+    pub chunks: [u32; 4],
+    /// Active faces of each level.
+    pub active: [u32; LEVEL_COUNT],
+    /// Patches of finer levels, leaves, and patches that are cut.
+    pub items: [u32; 3],
+    /// Patches to draw of each kind.
+    pub entries: [u32; 4],
+    /// Draws of each kind: on a software driver there may be one an entry.
+    pub draws: [u32; 4],
+}
+
+impl Capacities {
+    /// For these objects; `largest` is the most entries that a list begins with.
+    pub fn new(objects: &[ObjectDesc], meshes: &[MeshRanges], is_software: bool, largest: Option<u32>) -> Self {
+        let largest = largest.unwrap_or(FIRST_CAPACITY);
+        let sum = |of: &dyn Fn(&MeshRanges) -> u64| objects.iter().map(|object| of(&meshes[object.mesh])).sum::<u64>();
+        let worst = |of: &dyn Fn(&MeshRanges) -> u64| sum(of).min(u64::from(largest)) as u32;
+        let chunks = |count: usize| count.div_ceil(CHUNK as usize) as u64;
+        let all = |ranges: &[std::ops::Range<u32>]| ranges.iter().map(|range| range.len() as u64).sum::<u64>();
+        let chunk_counts: [&dyn Fn(&MeshRanges) -> u64; 4] = [
+            &|mesh| chunks(mesh.cage_points.len()),
+            &|mesh| chunks(mesh.slots.len() - mesh.cage_points.len()),
+            &|mesh| chunks(mesh.irregular[0].len()),
+            &|mesh| chunks(mesh.patches[0].len()),
+        ];
+        let patches = worst(&|mesh| all(&mesh.patches));
+        let leaves = worst(&|mesh| all(&mesh.irregular));
+        let entries = [patches, patches, leaves, largest];
+        Self {
+            chunks: chunk_counts.map(|of| sum(of) as u32),
+            active: std::array::from_fn(|level| {
+                worst(&|mesh| mesh.irregular.get(level).map_or(0, |range| range.len() as u64))
+            }),
+            items: [worst(&|mesh| all(&mesh.patches[1..])), leaves, patches.min(1 << 12).min(largest)],
+            entries,
+            draws: entries.map(|count| if is_software { count } else { 0 }),
+        }
+    }
+
+    /// With room for all that a frame asked for; none if all fitted.
+    pub fn grown(&self, status: &Status) -> Option<Self> {
+        let mut grown = self.clone();
+        let grow = |capacity: &mut u32, needed: u32| {
+            if needed > *capacity {
+                // Half as much again: the next frame may ask for a little more.
+                *capacity = needed.saturating_add(needed / 2);
+            }
+        };
+        for (level, capacity) in grown.active.iter_mut().enumerate().skip(1) {
+            grow(capacity, status.heads[LIST_ACTIVE + level].count);
+        }
+        for (capacity, list) in grown.items.iter_mut().zip([LIST_PATCHES, LIST_LEAVES, LIST_CUT]) {
+            grow(capacity, status.heads[list].count);
+        }
+        for (kind, head) in status.draw_heads.iter().enumerate() {
+            grow(&mut grown.entries[kind], head.count);
+            grow(&mut grown.draws[kind], head.draw_count);
+        }
+        (grown != *self).then_some(grown)
+    }
+
+    /// Where each kind's chunks begin.
+    pub(crate) fn first_chunks(&self) -> [u32; 4] {
+        first_of(&self.chunks)
+    }
+
+    /// Where each level's active faces begin.
+    pub(crate) fn first_active(&self) -> [u32; LEVEL_COUNT] {
+        first_of(&self.active)
+    }
+
+    /// The heads of empty lists; `phase_capacities` are rows of each phase.
+    pub(crate) fn heads(&self, phase_capacities: &[u32]) -> Vec<ListHead> {
+        let head = |capacity| ListHead { groups_x: 0, groups_y: 1, groups_z: 1, count: 0, capacity };
+        let mut heads = vec![head(0); LIST_COUNT];
+        heads[..4].iter_mut().zip(self.chunks).for_each(|(to, capacity)| *to = head(capacity));
+        heads[LIST_PATCHES..].iter_mut().zip(self.items).for_each(|(to, capacity)| *to = head(capacity));
+        heads[LIST_ACTIVE..].iter_mut().zip(self.active).for_each(|(to, capacity)| *to = head(capacity));
+        heads[LIST_PHASES..].iter_mut().zip(phase_capacities).for_each(|(to, &capacity)| *to = head(capacity));
+        heads
+    }
+
+    /// The heads of empty draw lists.
+    pub(crate) fn draw_heads(&self) -> [DrawHead; 4] {
+        let (first, first_draw) = (first_of(&self.entries), first_of(&self.draws));
+        std::array::from_fn(|kind| DrawHead {
+            capacity: self.entries[kind],
+            first: first[kind],
+            draw_capacity: self.draws[kind],
+            first_draw: first_draw[kind],
+            ..DrawHead::default()
+        })
+    }
+}
+
+fn first_of<const N: usize>(counts: &[u32; N]) -> [u32; N] {
+    let mut next = 0;
+    counts.map(|count| {
+        let first = next;
+        next += count;
+        first
+    })
+}
+
+/// What a frame left in its heads and counts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Status {
+    /// Heads of all lists.
+    pub heads: Vec<ListHead>,
+    /// Heads of the draw lists.
+    pub draw_heads: [DrawHead; 4],
+    /// Patches drawn, and the largest density.
+    pub counts: FrameCounts,
+}
+
+impl Status {
+    /// Patches drawn, by level.
+    pub fn patch_counts(&self, level_count: usize) -> Vec<PatchCounts> {
+        let of_level = |level: usize| PatchCounts {
+            regular: self.counts.regular[level],
+            transition: self.counts.transition[level],
+            filling: self.counts.filling[level],
+        };
+        (0..level_count).map(of_level).collect()
+    }
+
+    /// The largest density of a vertex.
+    pub fn density(&self) -> f32 {
+        f32::from_bits(self.counts.density_bits)
+    }
+
+    /// Points and limit points that were computed.
+    pub fn computed_points(&self, phase_count: usize) -> u64 {
+        self.heads[LIST_PHASES..][..phase_count].iter().map(|head| u64::from(head.count)).sum()
+    }
+}
+
+/// Which rows are made at once, in the order in which they must be: the last phase is that of the limit points.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Lists {
-    /// All entries.
-    pub entries: Vec<u32>,
-    /// Each kind's part of the entries.
-    pub ranges: [Range<u32>; 3],
+pub struct Phases {
+    /// First row and number of rows of each.
+    pub rows: Vec<[u32; 2]>,
+    /// Of each level, its phases.
+    pub of_level: Vec<std::ops::Range<usize>>,
 }
 
-impl Lists {
-    /// Every patch of the tables.
+impl Phases {
+    /// Of tables.
     pub fn new(tables: &Tables) -> Self {
-        let mut lists = Self::default();
-        let bspline = |transition: bool| {
-            (0..).zip(&tables.patches).filter(move |(_, p)| (p.info.transition != 0) == transition).map(|(i, _)| i)
-        };
-        lists.entries.extend(bspline(false));
-        lists.ranges[0] = 0..lists.entries.len() as u32;
-        lists.entries.extend(bspline(true));
-        lists.ranges[1] = lists.ranges[0].end..lists.entries.len() as u32;
-        lists.entries.extend(0..tables.filling.len() as u32);
-        lists.ranges[2] = lists.ranges[1].end..lists.entries.len() as u32;
-        lists
-    }
-
-    /// A kind's entries.
-    pub fn of_kind(&self, kind: PatchKind) -> &[u32] {
-        let range = &self.ranges[kind as usize];
-        &self.entries[range.start as usize..range.end as usize]
-    }
-
-    /// The batches of all lists.
-    pub fn batches(&self, tables: &Tables, shape: &DrawShape<'_>) -> Batches {
-        let mut batches = Batches::default();
-        for kind in PatchKind::ALL {
-            let draws = &mut batches.draws;
-            let first = draws.len() as u32;
-            let entries = self.of_kind(kind);
-            if shape.method == SurfaceMethod::Uniform {
-                draws.push(draw_arguments(0, entries.len() as u32, shape.method, shape.is_software));
-            } else {
-                let vertex_counts = entries.iter().map(|&entry| shape.vertex_count(tables, kind, entry));
-                push_batches(draws, vertex_counts, if shape.is_software { BATCH_VERTICES } else { u32::MAX });
-            }
-            batches.ranges[kind as usize] = first..draws.len() as u32;
+        let mut phases = Self::default();
+        for level in &tables.levels {
+            let first = phases.rows.len();
+            phases.rows.extend(level.dispatches.iter().map(|rows| [rows.start, rows.len() as u32]));
+            phases.of_level.push(first..phases.rows.len());
         }
-        batches
+        phases.rows.push([0, tables.limit_point_count()]);
+        phases
     }
-}
 
-/// The indirect draws of all lists, one after another. A draw's first vertex is its place in the kind's list.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Batches {
-    /// All draws.
-    pub draws: Vec<DrawArguments>,
-    /// Each kind's part of the draws.
-    pub ranges: [Range<u32>; 3],
-}
-
-impl Batches {
-    /// A kind's draws.
-    pub fn of_kind(&self, kind: PatchKind) -> &[DrawArguments] {
-        let range = &self.ranges[kind as usize];
-        &self.draws[range.start as usize..range.end as usize]
+    /// The phase of limit points.
+    pub fn limits(&self) -> usize {
+        self.rows.len() - 1
     }
-}
 
-/// The most patches of a batch: a group of the emit stage remembers one bit for each.
-pub const MAX_BATCH: u32 = 256;
-
-/// Vertices that a draw should generate on a software driver: on Mesa 22.3's, larger batches cost more by their square,
-/// smaller ones by their number (`planish bench --tess`).
-const BATCH_VERTICES: u32 = 512;
-
-/// What the shape of draws depends on.
-#[derive(Clone, Copy, Debug)]
-pub struct DrawShape<'a> {
-    /// Surface method.
-    pub method: SurfaceMethod,
-    /// Spacing.
-    pub spacing: Spacing,
-    /// Tess factor of each level.
-    pub factors: &'a [f32; FACTOR_COUNT],
-    /// Whether the device is a software driver.
-    pub is_software: bool,
-}
-
-impl DrawShape<'_> {
-    /// About how many vertices a patch generates.
-    fn vertex_count(&self, tables: &Tables, kind: PatchKind, entry: u32) -> u32 {
-        let segments = match kind {
-            PatchKind::Filling => filling_segment_count(self.method, self.spacing),
-            PatchKind::Regular | PatchKind::Transition => {
-                let level = usize::from(tables.patches[entry as usize].info.level);
-                segment_count(self.factors[level], self.spacing)
-            }
-        };
-        (segments + 1) * (segments + 1)
-    }
-}
-
-/// One draw for each run of patches that together generate at most `max_vertices`, or of a single one that generates more.
-fn push_batches(draws: &mut Vec<DrawArguments>, vertex_counts: impl Iterator<Item = u32>, max_vertices: u32) {
-    let (mut vertices, mut batch) =
-        (0, DrawArguments { vertex_count: 0, instance_count: 1, first_vertex: 0, first_instance: 0 });
-    for count in vertex_counts {
-        let is_full = vertices + count > max_vertices || batch.vertex_count == MAX_BATCH;
-        if batch.vertex_count > 0 && is_full {
-            draws.push(batch);
-            batch = DrawArguments { vertex_count: 0, first_vertex: batch.first_vertex + batch.vertex_count, ..batch };
-            vertices = 0;
-        }
-        batch.vertex_count += 1;
-        vertices += count;
-    }
-    if batch.vertex_count > 0 {
-        draws.push(batch);
-    }
-}
-
-/// The draw of `count` entries of a list from `first` on.
-pub fn draw_arguments(first: u32, count: u32, method: SurfaceMethod, is_software: bool) -> DrawArguments {
-    let (scale, instances) = match method {
-        SurfaceMethod::Uniform => (6, false),
-        SurfaceMethod::Fas => (1, is_software),
-    };
-    DrawArguments {
-        vertex_count: if instances { 1 } else { scale * count },
-        instance_count: if instances { count } else { 1 },
-        first_vertex: scale * first,
-        first_instance: 0,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn batches_cover_every_patch_once_and_stay_small() {
-        let mut draws = Vec::new();
-        push_batches(&mut draws, (0..1000).map(|i| if i < 10 { 4225 } else { 25 }), BATCH_VERTICES);
+    /// Where each phase's part of the lists of rows begins.
+    pub fn first_items(&self) -> Vec<u32> {
         let mut next = 0;
-        for draw in &draws {
-            assert_eq!((draw.first_vertex, draw.instance_count), (next, 1));
-            next += draw.vertex_count;
-        }
-        assert_eq!(next, 1000);
-        assert!(draws[..10].iter().all(|draw| draw.vertex_count == 1));
-        assert_eq!(draws[10].vertex_count, BATCH_VERTICES / 25);
+        let first = |&[_, count]: &[u32; 2]| {
+            let first = next;
+            next += count;
+            first
+        };
+        self.rows.iter().map(first).collect()
     }
+}
 
-    #[test]
-    fn without_a_bound_on_vertices_batches_are_as_large_as_they_may_be() {
-        let mut draws = Vec::new();
-        push_batches(&mut draws, (0..1000).map(|_| 4225), u32::MAX);
-        assert_eq!(draws.iter().map(|draw| draw.vertex_count).collect::<Vec<_>>(), [256, 256, 256, 232]);
-    }
-
-    #[test]
-    fn an_empty_list_has_no_batch() {
-        let mut draws = Vec::new();
-        push_batches(&mut draws, std::iter::empty(), BATCH_VERTICES);
-        assert!(draws.is_empty());
-    }
+/// The shape of a draw of `count` list entries from `first` on that has to be exact for any of them: on a software driver, where the
+/// cost of an instance is quadratic, each is its own instance.
+pub fn draw_arguments(first: u32, count: u32, method: SurfaceMethod, is_software: bool) -> DrawArguments {
+    let (vertex_count, instance_count) = match (method, is_software) {
+        (SurfaceMethod::Uniform, _) => (6 * count, 1),
+        (_, true) => (1, count),
+        (_, false) => (count, 1),
+    };
+    let first_vertex = if method == SurfaceMethod::Uniform { 6 * first } else { first };
+    DrawArguments { vertex_count, instance_count, first_vertex, first_instance: 0 }
 }

@@ -1,15 +1,12 @@
 //! What a frame is asked to be.
 
-/// Largest tess factor that a patch can have: the tessellator's own bound, by the specification.
-pub const MAX_TESS_FACTOR: f32 = 64.0;
-/// The same for fractional-odd spacing.
-pub const MAX_ODD_TESS_FACTOR: f32 = 63.0;
-
 /// How the irregular parts of a surface are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SurfaceMethod {
-    /// Static feature-adaptive subdivision (FAS).
+    /// Dynamic feature-adaptive subdivision: a depth of its own for every irregularity (DFAS).
     #[default]
+    Dfas,
+    /// Static feature-adaptive subdivision: every irregularity to one depth (FAS). The same kernels with a constant selection.
     Fas,
     /// Global table-driven refinement drawn as triangles: the baseline of FAS section 8.1.
     Uniform,
@@ -23,7 +20,7 @@ pub enum Spacing {
     /// The next odd number of segments, two of them shorter.
     #[default]
     FractionalOdd,
-    /// The next even number of segments, two of them shorter; never fewer than two.
+    /// The next even number of segments, two of them shorter; one at factor 1.
     FractionalEven,
 }
 
@@ -34,14 +31,6 @@ impl Spacing {
             Self::Equal => 0,
             Self::FractionalOdd => 1,
             Self::FractionalEven => 2,
-        }
-    }
-
-    /// Largest factor that a patch can be tessellated with.
-    pub fn max_factor(self) -> f32 {
-        match self {
-            Self::FractionalOdd => MAX_ODD_TESS_FACTOR,
-            Self::Equal | Self::FractionalEven => MAX_TESS_FACTOR,
         }
     }
 }
@@ -59,6 +48,59 @@ impl Default for Density {
     fn default() -> Self {
         Self::EdgePixels(4.0)
     }
+}
+
+/// Which irregular faces are refined.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Selection {
+    /// Those whose density asks for it.
+    #[default]
+    Dynamic,
+    /// All, to the level that the largest density of the frame asks for.
+    Static,
+}
+
+/// What is left out of a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Culling {
+    /// Nothing.
+    #[default]
+    Off,
+    /// What lies outside of the view.
+    Unseen,
+    /// That, and what shows its back, of objects that hide their backs.
+    UnseenAndBacks,
+}
+
+/// What frames may need: pipelines for nothing else are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameNeeds {
+    /// Spacing.
+    pub spacing: Spacing,
+    /// Some are culled.
+    pub culls: bool,
+    /// Some have densities above [`crate::density::MAX_UNCUT_DENSITY`].
+    pub cuts: bool,
+}
+
+impl FrameNeeds {
+    /// All.
+    pub fn all(spacing: Spacing) -> Self {
+        Self { spacing, culls: true, cuts: true }
+    }
+}
+
+/// How a frame selects and culls.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrameOptions {
+    /// How finely the surface is tessellated.
+    pub density: Density,
+    /// Which irregular faces are refined.
+    pub selection: Selection,
+    /// What is left out.
+    pub culling: Culling,
+    /// One density for each object, from the distance of its centre (FAS section 7), instead of one a vertex.
+    pub object_lod: bool,
 }
 
 /// What the beauty image shows.

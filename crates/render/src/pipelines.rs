@@ -34,6 +34,8 @@ pub(crate) struct PipelineOptions {
     pub wire: bool,
     /// Some regular patches have a semi-sharp crease.
     pub creases: bool,
+    /// Some patches are cut.
+    pub cuts: bool,
 }
 
 /// The pipeline of each kind of patch that the method has.
@@ -42,7 +44,8 @@ pub(crate) fn pipelines(
     options: &PipelineOptions,
 ) -> Result<Vec<(PatchKind, GraphicsPipeline)>, Error> {
     let kinds: &[PatchKind] = match options.method {
-        SurfaceMethod::Fas => &PatchKind::ALL,
+        SurfaceMethod::Dfas | SurfaceMethod::Fas if options.cuts => &PatchKind::ALL,
+        SurfaceMethod::Dfas | SurfaceMethod::Fas => &PatchKind::ALL[..PatchKind::Cut as usize],
         SurfaceMethod::Uniform => &[PatchKind::Filling],
     };
     kinds.iter().map(|&kind| Ok((kind, pipeline(device, options, kind)?))).collect()
@@ -53,9 +56,10 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
         SpecConstant { id: shaders::bspline_patch_tesc::SPEC_SPACING, bits: options.spacing.constant() },
         SpecConstant {
             id: shaders::bspline_patch_lean_tese::SPEC_TRANSITION,
-            bits: u32::from(kind == PatchKind::Transition),
+            bits: u32::from(matches!(kind, PatchKind::Transition | PatchKind::Cut)),
         },
         SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_CREASE, bits: u32::from(options.creases) },
+        SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_CUT, bits: u32::from(kind == PatchKind::Cut) },
     ];
     let view_constant = [SpecConstant { id: shaders::surface_lean_frag::SPEC_VIEW, bits: options.view.constant() }];
     let geometry = geometry_stages(options, kind);
@@ -86,7 +90,7 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
             stages: &stages,
             push_size: size_of::<DrawPush>() as u32,
             topology: match options.method {
-                SurfaceMethod::Fas => Topology::Patches { control_points: 1 },
+                SurfaceMethod::Dfas | SurfaceMethod::Fas => Topology::Patches { control_points: 1 },
                 SurfaceMethod::Uniform => Topology::Triangles,
             },
             color_formats: if is_dump { &[] } else { &formats },
@@ -125,24 +129,20 @@ fn geometry_stages(options: &PipelineOptions, kind: PatchKind) -> Vec<&'static S
         );
         return vec![list, &shaders::bspline_patch_tesc::PROGRAM, evaluation];
     }
-    let control = if options.spacing == Spacing::FractionalEven {
-        &shaders::filling_quad_midpoints_tesc::PROGRAM
-    } else {
-        &shaders::filling_quad_corners_tesc::PROGRAM
-    };
     let evaluation = pick(
         &shaders::filling_quad_lean_tese::PROGRAM,
         &shaders::filling_quad_layers_tese::PROGRAM,
         &shaders::filling_quad_dump_tese::PROGRAM,
     );
-    vec![list, control, evaluation]
+    vec![list, &shaders::filling_quad_tesc::PROGRAM, evaluation]
 }
 
 fn pass_name(options: &PipelineOptions, kind: PatchKind) -> &'static str {
     match (options.method, kind) {
         (SurfaceMethod::Uniform, _) => "uniform quads",
-        (SurfaceMethod::Fas, PatchKind::Regular) => "regular patches",
-        (SurfaceMethod::Fas, PatchKind::Transition) => "transition patches",
-        (SurfaceMethod::Fas, PatchKind::Filling) => "filling quads",
+        (_, PatchKind::Regular) => "regular patches",
+        (_, PatchKind::Transition) => "transition patches",
+        (_, PatchKind::Filling) => "filling quads",
+        (_, PatchKind::Cut) => "cut patches",
     }
 }

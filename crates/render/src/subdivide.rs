@@ -2,11 +2,13 @@
 
 use planish_gpu::{ComputePipeline, Device, Encoder};
 use planish_shaders::subdivide_comp::{PROGRAM, Push};
-use planish_subdiv::tables::{LevelPoints, Tables};
+use planish_subdiv::tables::Tables;
 
 use crate::edit_points::{EditPoints, edit_points};
 use crate::error::Error;
+use crate::lists::LIST_PHASES;
 use crate::program::compute_pipeline;
+use crate::select::head_offset;
 use crate::surface::Surface;
 use crate::upload::address;
 
@@ -21,32 +23,34 @@ impl Subdivide {
         Ok(Self { points: compute_pipeline(device, &PROGRAM)?, edits: EditPoints::new(device)? })
     }
 
-    /// Records one dispatch a level (two where n-gons of many sides have their face points made first), and one for
-    /// the hierarchical edits of a level that has any.
+    /// Records one dispatch a level (two where n-gons of many sides have their face points made first) over its rows in use,
+    /// and one for the hierarchical edits of a level that has any.
     pub(crate) fn record(&self, encoder: &mut Encoder, surface: &Surface) {
-        for level in &surface.tables.levels {
-            self.record_level(encoder, surface, level);
+        let first_items = surface.phases.first_items();
+        for (level, phases) in surface.tables.levels.iter().zip(&surface.phases.of_level) {
+            for phase in phases.clone().filter(|&phase| surface.phases.rows[phase][1] > 0) {
+                self.record_phase(encoder, surface, phase, first_items[phase]);
+            }
             if !level.edits.is_empty() {
                 self.edits.record(encoder, surface, level.edits.clone());
             }
         }
     }
 
-    fn record_level(&self, encoder: &mut Encoder, surface: &Surface, level: &LevelPoints) {
-        let buffers = &surface.buffers;
-        for rows in level.dispatches.iter().filter(|rows| !rows.is_empty()) {
-            let push = Push {
-                points: address(&buffers.points),
-                rows: address(&buffers.rows),
-                indices: address(&buffers.indices),
-                weights: address(&buffers.weights),
-                first_row: rows.start,
-                row_count: rows.len() as u32,
-                first_point: surface.tables.cage_point_count,
-                ..Push::default()
-            };
-            encoder.compute(&self.points, &push, push.row_count);
-        }
+    fn record_phase(&self, encoder: &mut Encoder, surface: &Surface, phase: usize, first_item: u32) {
+        let (tables, heads) = (&surface.buffers, &surface.lists.heads);
+        let list = LIST_PHASES + phase;
+        let push = Push {
+            points: address(&surface.frame.points),
+            rows: address(&tables.rows),
+            indices: address(&tables.indices),
+            weights: address(&tables.weights),
+            in_use: address::<planish_shaders::Indices>(&surface.frame.in_use).offset(first_item.into()),
+            head: address::<planish_shaders::ListHeads>(heads).offset(list as u64),
+            first_point: surface.tables.cage_point_count,
+            ..Push::default()
+        };
+        encoder.compute_indirect(&self.points, &push, heads, head_offset(list));
     }
 }
 

@@ -1,34 +1,32 @@
-//! A cage on the GPU: its tables, and the buffers that its frames fill.
+//! A scene's meshes and objects on the GPU: their tables, and the buffers that frames fill.
 
+use std::ops::Range;
 use std::time::Instant;
 
-use planish_gpu::{Buffer, Device, DrawArguments, Encoder, Transfer};
-use planish_shaders::{EmitCounts, EmitLevel};
+use planish_gpu::Device;
+use planish_shaders as shaders;
+use planish_shaders::{DrawHead, FrameCounts, FrameData, FrameInput, ListHead, Object, SceneData};
 use planish_subdiv::ControlMesh;
 use planish_subdiv::mesh::HierarchicalEdit;
-use planish_subdiv::patch::{FillingQuad, PatchInfo, RegularPatch};
 use planish_subdiv::refine::{CreasePatches, RefineOptions, Refinement};
-use planish_subdiv::tables::{PatchCounts, Tables};
+use planish_subdiv::tables::{MeshRanges, Tables};
 
-use crate::density::FACTOR_COUNT;
-use crate::edit_points::targets;
-use crate::emit::{Emitted, emit_levels, patch_counts};
+use crate::buffers::{FrameBuffers, ListBuffers, TableBuffers};
+use crate::camera::FrameCamera;
+use crate::density::frame_input;
 use crate::error::Error;
-use crate::limit::Limit;
-use crate::lists::{Batches, DrawShape, Lists, PatchKind};
-use crate::options::{Spacing, SurfaceMethod};
-use crate::subdivide::Subdivide;
-use crate::tessellation::filling_segment_count;
-use crate::upload::{array, mapped, table};
+use crate::lists::{Capacities, Phases, Status};
+use crate::marks::Marks;
+use crate::objects::{MeshFacts, ObjectDesc};
+use crate::options::{FrameOptions, SurfaceMethod};
+use crate::upload::address;
 
-/// What to make of a cage.
+/// What to make of cages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SurfaceDesc {
     /// Surface method.
     pub method: SurfaceMethod,
-    /// Spacing: fractional-even needs the limits of edges' middles.
-    pub spacing: Spacing,
-    /// Level that irregularities are isolated to ([`crate::density::isolation_level`]).
+    /// No irregularity is isolated deeper ([`crate::density::isolation_level`]).
     pub level: u32,
     /// Which creases are patches of their own.
     pub crease_patches: CreasePatches,
@@ -37,7 +35,7 @@ pub struct SurfaceDesc {
 impl SurfaceDesc {
     /// Whether regular patches may have a semi-sharp crease.
     pub(crate) fn has_creased_patches(&self) -> bool {
-        self.method == SurfaceMethod::Fas && self.crease_patches == CreasePatches::Single
+        self.method != SurfaceMethod::Uniform && self.crease_patches == CreasePatches::Single
     }
 }
 
@@ -59,144 +57,212 @@ pub struct MemoryBytes {
     pub tables: u64,
     /// Points of all levels and limit points.
     pub points: u64,
-    /// Render lists and indirect draws, and what the emit stage makes of them.
+    /// Objects, densities, marks, lists and draws.
     pub lists: u64,
 }
 
-/// The tables of a cage, and how long they took.
+/// The tables of meshes, and how long they took.
 #[derive(Clone, Debug)]
 pub struct Preprocessed {
-    /// The tables.
+    /// The tables of all meshes.
     pub tables: Tables,
+    /// Each mesh's part of them.
+    pub meshes: Vec<MeshRanges>,
     /// Times; `upload` is 0.
     pub times: PreprocessTimes,
 }
 
-/// Refines a cage and builds its tables, on one thread of the CPU.
-pub fn preprocess(mesh: &ControlMesh, desc: &SurfaceDesc) -> Result<Preprocessed, Error> {
-    let start = Instant::now();
+/// Refines cages and builds their tables, on one thread of the CPU.
+pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preprocessed, Error> {
     let options = RefineOptions {
         max_level: desc.level,
         uniform: desc.method == SurfaceMethod::Uniform,
-        midpoints: filling_segment_count(desc.method, desc.spacing) == 2,
         crease_patches: desc.crease_patches,
     };
-    let refinement = Refinement::new(mesh, options)?;
-    let topology = milliseconds(start);
+    let mut times = PreprocessTimes::default();
+    let mut parts = Vec::with_capacity(meshes.len());
+    for mesh in meshes {
+        let start = Instant::now();
+        let refinement = Refinement::new(mesh, options)?;
+        times.topology += milliseconds(start);
+        let start = Instant::now();
+        parts.push(Tables::new(&refinement));
+        times.tables += milliseconds(start);
+    }
     let start = Instant::now();
-    let tables = Tables::new(&refinement);
-    let times = PreprocessTimes { topology, tables: milliseconds(start), upload: 0.0 };
-    Ok(Preprocessed { tables, times })
+    let (tables, meshes) = Tables::merge(parts)?;
+    times.tables += milliseconds(start);
+    Ok(Preprocessed { tables, meshes, times })
 }
 
-pub(crate) struct Buffers {
-    pub cage: Buffer,
-    pub points: Buffer,
-    pub rows: Buffer,
-    pub indices: Buffer,
-    pub weights: Buffer,
-    pub edit_targets: Buffer,
-    pub edit_offsets: Buffer,
-    pub limits: Buffer,
-    pub limit_rows: Buffer,
-    pub limit_indices: Buffer,
-    pub limit_weights: Buffer,
-    pub patches: Buffer,
-    pub quads: Buffer,
-    pub list: Buffer,
-    pub draws: Buffer,
-    /// What the emit stage makes of the list.
-    pub visible_list: Buffer,
-    /// What it makes of the draws.
-    pub visible_draws: Buffer,
-    /// Patches of `visible_list`, by kind.
-    pub visible_counts: Buffer,
-    pub emit_levels: Buffer,
-}
-
-/// A cage on the GPU. Everything is kept alive by the surface: it must outlive the frames recorded with it.
+/// Meshes and objects on the GPU. Everything is kept alive by the surface: it must outlive the frames recorded with it.
 pub struct Surface {
     pub(crate) desc: SurfaceDesc,
     pub(crate) tables: Tables,
-    pub(crate) lists: Lists,
-    pub(crate) batches: Batches,
-    pub(crate) emit_levels: Vec<EmitLevel>,
-    pub(crate) buffers: Buffers,
+    pub(crate) meshes: Vec<MeshRanges>,
+    pub(crate) objects: Vec<Object>,
+    pub(crate) phases: Phases,
+    pub(crate) buffers: TableBuffers,
+    pub(crate) frame: FrameBuffers,
+    pub(crate) lists: ListBuffers,
+    capacities: Capacities,
+    marks: Marks,
+    density_scales: Vec<f32>,
+    sub_pixel_bits: u32,
     times: PreprocessTimes,
-    memory: MemoryBytes,
 }
 
 impl Surface {
-    /// Uploads what [`preprocess`] made, and the cage's positions.
-    /// `factors` are those of [`crate::density::level_factors`].
+    /// Uploads what [`preprocess`] made of the meshes, and their cages' positions.
     pub fn new(
         device: &Device,
-        mesh: &ControlMesh,
+        meshes: &[&ControlMesh],
+        objects: &[ObjectDesc],
         desc: SurfaceDesc,
         made: Preprocessed,
-        factors: &[f32; FACTOR_COUNT],
+    ) -> Result<Self, Error> {
+        Self::with_capacity(device, meshes, objects, desc, made, None)
+    }
+
+    /// As [`Self::new`], with lists of at most so many entries to begin with. For tests of lists that overflow.
+    pub fn with_capacity(
+        device: &Device,
+        meshes: &[&ControlMesh],
+        objects: &[ObjectDesc],
+        desc: SurfaceDesc,
+        made: Preprocessed,
+        capacity: Option<u32>,
     ) -> Result<Self, Error> {
         let start = Instant::now();
-        let Preprocessed { tables, mut times } = made;
-        let lists = Lists::new(&tables);
-        let shape =
-            DrawShape { method: desc.method, spacing: desc.spacing, factors, is_software: device.is_software() };
-        let batches = lists.batches(&tables, &shape);
-        let emit_levels = emit_levels(&tables, factors, desc.spacing);
-        let (entry_count, draw_count) = (lists.entries.len() as u32, batches.draws.len() as u32);
-        let stencils = &tables.stencils;
-        let limits = &tables.limits;
-        let buffers = Buffers {
-            cage: mapped::<planish_shaders::Points>(device, "cage", tables.cage_point_count)?,
-            points: array::<planish_shaders::Points>(device, "points", tables.point_count())?,
-            rows: table(device, "stencil rows", &rows(&stencils.rows))?,
-            indices: table(device, "stencil indices", &stencils.indices)?,
-            weights: table(device, "stencil weights", &stencils.weights)?,
-            edit_targets: table(device, "edit targets", &targets(&tables.edits))?,
-            edit_offsets: mapped::<planish_shaders::Points>(device, "edit offsets", tables.edits.len() as u32)?,
-            limits: array::<planish_shaders::LimitPoint>(device, "limit points", tables.limit_point_count())?,
-            limit_rows: table(device, "limit rows", &rows(&limits.rows))?,
-            limit_indices: table(device, "limit indices", &limits.indices)?,
-            limit_weights: table(device, "limit weights", &limits.weights)?,
-            patches: table(device, "patches", &patches(&tables))?,
-            quads: filling_quads(device, &tables)?,
-            list: table(device, "render lists", &lists.entries)?,
-            draws: table(device, "draws", &batches.draws)?,
-            visible_list: array::<u32>(device, "visible lists", entry_count)?,
-            visible_draws: array::<DrawArguments>(device, "visible draws", draw_count)?,
-            visible_counts: array::<EmitCounts>(device, "visible counts", PatchKind::ALL.len() as u32)?,
-            emit_levels: table(device, "emit levels", &emit_levels)?,
-        };
+        let Preprocessed { tables, meshes: ranges, mut times } = made;
+        let facts: Vec<MeshFacts> =
+            meshes.iter().zip(&ranges).map(|(mesh, range)| MeshFacts::new(mesh, range)).collect();
+        let (gpu_objects, sizes) = crate::objects::objects(objects, meshes, &facts, &ranges);
+        let phases = Phases::new(&tables);
+        let marks = Marks::new(&phases);
+        let density_scales = density_scales(meshes, &ranges, tables.cage_point_count);
+        let capacities = Capacities::new(objects, &ranges, device.is_software(), capacity);
+        let buffers = TableBuffers::new(device, &tables, &marks, &density_scales)?;
+        let frame = FrameBuffers::new(device, &tables, &gpu_objects, &sizes, &marks)?;
+        let lists = ListBuffers::new(device, &capacities, &phases, desc.method)?;
         times.upload = milliseconds(start);
-        let memory = buffers.memory();
-        let surface = Self { desc, tables, lists, batches, emit_levels, buffers, times, memory };
-        surface.set_cage(&mesh.positions)?;
-        surface.set_edits(&mesh.edits)?;
+        let sub_pixel_bits = device.limits().sub_pixel_bits;
+        let surface = Self {
+            desc,
+            tables,
+            meshes: ranges,
+            objects: gpu_objects,
+            phases,
+            buffers,
+            frame,
+            lists,
+            capacities,
+            marks,
+            density_scales,
+            sub_pixel_bits,
+            times,
+        };
+        surface.write_scene()?;
+        for (mesh, cage) in meshes.iter().enumerate() {
+            surface.set_cage(mesh, &cage.positions)?;
+        }
+        let edits: Vec<HierarchicalEdit> = meshes.iter().flat_map(|mesh| mesh.edits.iter().cloned()).collect();
+        surface.set_edits(&edits)?;
         Ok(surface)
     }
 
-    /// Sets the positions of the cage's vertices, for all frames submitted from now on.
+    /// Sets the positions of a cage's vertices, for all frames submitted from now on.
     ///
     /// # Panics
     /// If there are more positions than cage vertices.
-    pub fn set_cage(&self, positions: &[[f32; 3]]) -> Result<(), Error> {
+    pub fn set_cage(&self, mesh: usize, positions: &[[f32; 3]]) -> Result<(), Error> {
+        let range = &self.meshes[mesh].cage_points;
+        assert!(positions.len() <= range.len(), "{} positions for {} vertices", positions.len(), range.len());
         if !positions.is_empty() {
-            self.buffers.cage.write(0, positions)?;
+            self.frame.cage.write(u64::from(range.start) * size_of::<[f32; 3]>() as u64, positions)?;
         }
         Ok(())
     }
 
     /// Sets the values of the hierarchical edits that set or move points, for all frames submitted from now on: only
-    /// their offsets are uploaded. The edits are the mesh's, in their order, with other values.
+    /// their offsets are uploaded. The edits are the meshes', one mesh after the other in their order, with other values.
     ///
     /// # Panics
-    /// If there are fewer edits than the mesh had.
+    /// If there are fewer edits than the meshes had.
     pub fn set_edits(&self, edits: &[HierarchicalEdit]) -> Result<(), Error> {
         let offsets: Vec<[f32; 3]> = self.tables.point_edits(edits).iter().map(|edit| edit.offset).collect();
         if !offsets.is_empty() {
-            self.buffers.edit_offsets.write(0, &offsets)?;
+            self.frame.edit_offsets.write(0, &offsets)?;
         }
         Ok(())
+    }
+
+    /// Sets what all frames submitted from now on are to be: seen by this camera, selected and culled so. A recording of draws has
+    /// its camera's matrix besides.
+    pub fn set_frame(&self, camera: &FrameCamera, options: &FrameOptions) -> Result<(), Error> {
+        self.frame.input.write(0, &[self.frame_input(camera, options)?])?;
+        let data = FrameData {
+            scene: address(&self.frame.scene),
+            world_to_camera: camera.world_to_camera.to_cols_array_2d(),
+            ..FrameData::default()
+        };
+        Ok(self.frame.data.write(0, &[data])?)
+    }
+
+    /// What [`Self::set_frame`] tells the kernels.
+    pub fn frame_input(&self, camera: &FrameCamera, options: &FrameOptions) -> Result<FrameInput, Error> {
+        frame_input(camera, options, self.desc.level, self.objects.len() as u32, self.sub_pixel_bits)
+    }
+
+    /// Makes room for what did not fit in the last frame's lists; whether there was anything. Frames must be recorded anew then.
+    pub fn grow(&mut self, device: &Device) -> Result<bool, Error> {
+        let Some(grown) = self.capacities.grown(&self.status()?) else { return Ok(false) };
+        self.lists = ListBuffers::new(device, &grown, &self.phases, self.desc.method)?;
+        self.capacities = grown;
+        self.write_scene()?;
+        Ok(true)
+    }
+
+    fn write_scene(&self) -> Result<(), Error> {
+        let (tables, frame, lists) = (&self.buffers, &self.frame, &self.lists);
+        let data = SceneData {
+            frame_input: address(&frame.input),
+            objects: address(&frame.objects),
+            points: address(&frame.points),
+            limits: address(&frame.limits),
+            patches: address(&tables.patches),
+            irregular: address(&tables.irregular),
+            ptex_faces: address(&tables.ptex_faces),
+            neighbour_first: address(&tables.neighbours[0]),
+            neighbours: address(&tables.neighbours[1]),
+            ring_first: address(&tables.rings[0]),
+            rings: address(&tables.rings[1]),
+            density_scales: address(&tables.density_scales),
+            star_first: address(&tables.stars[0]),
+            star_marks_of: address(&tables.stars[1]),
+            densities: address(&frame.densities),
+            split_edges: address(&frame.split_edges),
+            star_marks: address(&frame.star_marks),
+            marks: address(&frame.marks),
+            mark_groups: address(&tables.mark_groups),
+            in_use: address(&frame.in_use),
+            chunks: address(&lists.chunks),
+            active_faces: address(&lists.active),
+            patch_items: address(&lists.items[0]),
+            leaf_items: address(&lists.items[1]),
+            cut_items: address(&lists.items[2]),
+            heads: address(&lists.heads),
+            draw_heads: address(&lists.draw_heads),
+            entries: address(&lists.entries),
+            draws: address(&lists.draws),
+            counts: address(&frame.counts),
+            chunk_first: self.capacities.first_chunks(),
+            first_active: self.capacities.first_active(),
+            mark_group_count: self.marks.groups.len() as u32,
+            first_limit_mark: self.marks.first_limit,
+            ..SceneData::default()
+        };
+        Ok(frame.scene.write(0, &[data])?)
     }
 
     /// What the surface was made as.
@@ -204,24 +270,34 @@ impl Surface {
         &self.desc
     }
 
-    /// The tables.
+    /// The tables of all meshes.
     pub fn tables(&self) -> &Tables {
         &self.tables
     }
 
-    /// The render lists.
-    pub fn lists(&self) -> &Lists {
-        &self.lists
+    /// Each mesh's part of the tables.
+    pub fn meshes(&self) -> &[MeshRanges] {
+        &self.meshes
     }
 
-    /// The draws of the render lists.
-    pub fn batches(&self) -> &Batches {
-        &self.batches
+    /// The objects, as the kernels read them.
+    pub fn objects(&self) -> &[Object] {
+        &self.objects
     }
 
-    /// How the patches of each level are tessellated.
-    pub fn emit_levels(&self) -> &[EmitLevel] {
-        &self.emit_levels
+    /// Scale of the density at each cage point.
+    pub fn density_scales(&self) -> &[f32] {
+        &self.density_scales
+    }
+
+    /// How much fits into the lists.
+    pub fn capacities(&self) -> &Capacities {
+        &self.capacities
+    }
+
+    /// The phases of subdivision.
+    pub fn phases(&self) -> &Phases {
+        &self.phases
     }
 
     /// Times of the work done once.
@@ -231,136 +307,69 @@ impl Surface {
 
     /// Bytes of GPU memory in use.
     pub fn memory(&self) -> MemoryBytes {
-        self.memory
+        let frame = &self.frame;
+        let points = frame.cage.size() + frame.points.size() + frame.limits.size();
+        let lists = frame.all().iter().chain(&self.lists.all()).map(|buffer| buffer.size()).sum::<u64>() - points;
+        MemoryBytes { tables: self.buffers.all().iter().map(|buffer| buffer.size()).sum(), points, lists }
+    }
+
+    /// What the last frame that was waited for left in its lists.
+    pub fn status(&self) -> Result<Status, Error> {
+        let counts: Vec<FrameCounts> = self.frame.counts_read.read(0, 1)?;
+        let draw_heads: Vec<DrawHead> = self.lists.draw_heads_read.read(0, 4)?;
+        Ok(Status {
+            heads: self.lists.heads_read.read::<ListHead>(0, crate::lists::LIST_COUNT)?,
+            draw_heads: std::array::from_fn(|kind| draw_heads[kind]),
+            counts: counts[0],
+        })
     }
 
     /// The points of all levels as the last frame left them; waits for the device. For tests.
     pub fn download_points(&self, device: &Device) -> Result<Vec<[f32; 3]>, Error> {
-        Ok(device.download(&self.buffers.points, 0, self.tables.point_count() as usize)?)
+        Ok(device.download(&self.frame.points, 0, self.tables.point_count() as usize)?)
     }
 
     /// The limit points as the last frame left them; waits for the device. For tests.
-    pub fn download_limits(&self, device: &Device) -> Result<Vec<planish_shaders::LimitPoint>, Error> {
-        Ok(device.download(&self.buffers.limits, 0, self.tables.limit_point_count() as usize)?)
+    pub fn download_limits(&self, device: &Device) -> Result<Vec<shaders::LimitPoint>, Error> {
+        Ok(device.download(&self.frame.limits, 0, self.tables.limit_point_count() as usize)?)
     }
 
-    /// How many patches of each level the last frame that had an emit stage has drawn; waits for the device.
-    pub fn download_visible_counts(&self, device: &Device) -> Result<Vec<PatchCounts>, Error> {
-        let counts = device.download(&self.buffers.visible_counts, 0, PatchKind::ALL.len())?;
-        Ok(patch_counts(&counts, self.tables.counts.len()))
+    /// Densities of all objects' slots as the last frame left them; waits for the device.
+    pub fn download_densities(&self, device: &Device) -> Result<Vec<shaders::SlotDensity>, Error> {
+        let count = self.frame.densities.size() as usize / size_of::<shaders::SlotDensity>();
+        Ok(device.download(&self.frame.densities, 0, count)?)
     }
 
-    /// What the emit stage of the last frame made; waits for the device. For tests.
-    pub fn download_emitted(&self, device: &Device) -> Result<Emitted, Error> {
-        let buffers = &self.buffers;
-        Ok(Emitted {
-            entries: device.download(&buffers.visible_list, 0, self.lists.entries.len())?,
-            draws: device.download(&buffers.visible_draws, 0, self.batches.draws.len())?,
-            counts: self.download_visible_counts(device)?,
-        })
-    }
-}
-
-/// The stages that make a frame's points, before anything is drawn.
-pub struct PointStages {
-    subdivide: Subdivide,
-    limit: Limit,
-}
-
-impl PointStages {
-    /// Makes the pipelines.
-    pub fn new(device: &Device) -> Result<Self, Error> {
-        Ok(Self { subdivide: Subdivide::new(device)?, limit: Limit::new(device)? })
+    /// Rows in use of each phase, in ascending order, and then limit points, as the last frame listed them; waits for the
+    /// device. For tests.
+    pub fn download_rows_in_use(&self, device: &Device) -> Result<Vec<Vec<u32>>, Error> {
+        let status = self.status()?;
+        let mut phases = Vec::new();
+        for (phase, first) in self.phases.first_items().into_iter().enumerate() {
+            let count = status.heads[crate::lists::LIST_PHASES + phase].count as usize;
+            let mut rows: Vec<u32> = device.download(&self.frame.in_use, 4 * u64::from(first), count)?;
+            rows.sort_unstable();
+            phases.push(rows);
+        }
+        Ok(phases)
     }
 
-    /// Records: cage to points, subdivide, limit. Takes the times `start`, `subdivide` and `limit`.
-    pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
-        surface.buffers.keep(encoder);
-        encoder.timestamp("start");
-        let Buffers { cage, points, visible_counts, .. } = &surface.buffers;
-        encoder.transfer(&[
-            Transfer::Copy { from: cage, from_offset: 0, to: points, to_offset: 0, size: cage.size() },
-            Transfer::Fill { buffer: visible_counts, offset: 0, size: visible_counts.size(), value: 0 },
-        ]);
-        self.subdivide.record(encoder, surface);
-        encoder.timestamp("subdivide");
-        self.limit.record(encoder, surface);
-        encoder.timestamp("limit");
+    /// The patches of a kind that the last frame listed to draw; waits for the device.
+    pub fn download_entries(&self, device: &Device, range: Range<u32>) -> Result<Vec<shaders::DrawEntry>, Error> {
+        let offset = u64::from(range.start) * size_of::<shaders::DrawEntry>() as u64;
+        Ok(device.download(&self.lists.entries, offset, range.len())?)
     }
 }
 
-impl Buffers {
-    fn all(&self) -> [&Buffer; 19] {
-        [
-            &self.cage,
-            &self.points,
-            &self.rows,
-            &self.indices,
-            &self.weights,
-            &self.edit_targets,
-            &self.edit_offsets,
-            &self.limits,
-            &self.limit_rows,
-            &self.limit_indices,
-            &self.limit_weights,
-            &self.patches,
-            &self.quads,
-            &self.list,
-            &self.draws,
-            &self.visible_list,
-            &self.visible_draws,
-            &self.visible_counts,
-            &self.emit_levels,
-        ]
+/// Scales of the densities at all cage points.
+fn density_scales(meshes: &[&ControlMesh], ranges: &[MeshRanges], count: u32) -> Vec<f32> {
+    let mut scales = vec![1.0; count as usize];
+    for (mesh, range) in meshes.iter().zip(ranges) {
+        for (vertex, &scale) in mesh.density.iter().enumerate() {
+            scales[range.cage_points.start as usize + vertex] = scale;
+        }
     }
-
-    fn keep(&self, encoder: &mut Encoder) {
-        self.all().into_iter().for_each(|buffer| encoder.keep(buffer));
-    }
-
-    fn memory(&self) -> MemoryBytes {
-        let points = self.cage.size() + self.points.size() + self.limits.size();
-        let visible = [&self.visible_list, &self.visible_draws, &self.visible_counts, &self.emit_levels];
-        let visible: u64 = visible.iter().map(|buffer| buffer.size()).sum();
-        let lists = self.list.size() + self.draws.size() + visible;
-        let all: u64 = self.all().iter().map(|buffer| buffer.size()).sum();
-        MemoryBytes { tables: all - points - lists, points, lists }
-    }
-}
-
-fn rows(rows: &[planish_subdiv::stencil::StencilRow]) -> Vec<planish_shaders::StencilRow> {
-    rows.iter()
-        .map(|row| planish_shaders::StencilRow {
-            first_index: row.first_index,
-            first_weight: row.first_weight,
-            count: row.count,
-        })
-        .collect()
-}
-
-fn info(info: &PatchInfo) -> planish_shaders::PatchInfo {
-    let [ptex_face, corner, flags] = info.pack();
-    planish_shaders::PatchInfo { ptex_face, corner, flags }
-}
-
-fn patches(tables: &Tables) -> Vec<planish_shaders::RegularPatch> {
-    let patch = |p: &RegularPatch| planish_shaders::RegularPatch {
-        points: p.points,
-        info: info(&p.info),
-        sharpness: p.sharpness,
-    };
-    tables.patches.iter().map(patch).collect()
-}
-
-fn filling_quads(device: &Device, tables: &Tables) -> Result<Buffer, Error> {
-    if tables.filling_midpoints.is_empty() {
-        let quad = |q: &FillingQuad| planish_shaders::FillingQuad { corners: q.corners, info: info(&q.info) };
-        return table(device, "filling quads", &tables.filling.iter().map(quad).collect::<Vec<_>>());
-    }
-    let quads = tables.filling.iter().zip(&tables.filling_midpoints).map(|(quad, &midpoints)| {
-        planish_shaders::FillingQuadMidpoints { corners: quad.corners, midpoints, info: info(&quad.info) }
-    });
-    table(device, "filling quads with midpoints", &quads.collect::<Vec<_>>())
+    scales
 }
 
 fn milliseconds(start: Instant) -> f64 {

@@ -23,11 +23,13 @@
 //!   (S'_u x S_u)`, in which S'_u and S_u, means over steps r and s from one point, differ by |r - s| / 2 times the second
 //!   derivative at most: it needs `x > s |r - s| / (2 t) |S_uu| / |S_v|` besides, and in n there is s / (r t) U / (U V).
 //!
-//! [`crate::tessellation::emit_level`] knows the shortest r and t and the longest s.
+//! [`crate::factors::PatchFactors::grain`] knows the shortest r and t and the longest s.
 
 use std::array::from_fn;
 
-use planish_shaders::{EmitLevel, EmitView};
+use planish_shaders::EmitView;
+
+use crate::factors::Grain;
 
 type Vec3 = [f32; 3];
 
@@ -40,7 +42,7 @@ fn add(a: Vec3, b: Vec3) -> Vec3 {
     from_fn(|c| a[c] + b[c])
 }
 
-fn sub(a: Vec3, b: Vec3) -> Vec3 {
+pub(crate) fn sub(a: Vec3, b: Vec3) -> Vec3 {
     from_fn(|c| a[c] - b[c])
 }
 
@@ -52,7 +54,7 @@ fn over(a: Vec3, divisor: f32) -> Vec3 {
     a.map(|c| c / divisor)
 }
 
-fn dot(a: Vec3, b: Vec3) -> f32 {
+pub(crate) fn dot(a: Vec3, b: Vec3) -> f32 {
     (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
 }
 
@@ -99,9 +101,9 @@ impl Scale {
     }
 }
 
-fn outside_planes(d: Vec3, view: &EmitView, scale: &Scale) -> u32 {
+fn outside_planes(d: Vec3, view: &EmitView, scale: &Scale, margin: f32) -> u32 {
     let (x, y, w) = (dot(view.clip_x, d), dot(view.clip_y, d), dot(view.clip_w, d));
-    let noise = (scale.rounding + scale.eye_rounding) + ROUNDING;
+    let noise = ((scale.rounding + scale.eye_rounding) + ROUNDING) + margin;
     let depth_noise = sum_of_components(view.clip_w) * noise;
     let x_noise = -(sum_of_components(view.clip_x) * noise + depth_noise);
     let y_noise = -(sum_of_components(view.clip_y) * noise + depth_noise);
@@ -110,6 +112,13 @@ fn outside_planes(d: Vec3, view: &EmitView, scale: &Scale) -> u32 {
         | u32::from(w + y < y_noise) << 2
         | u32::from(w - y < y_noise) << 3
         | u32::from(w - scale.near < -depth_noise) << 4
+}
+
+/// The planes that a point and all within `margin` of it lie outside of.
+pub fn point_outside_planes(p: Vec3, view: &EmitView, margin: f32) -> u32 {
+    let scale = Scale::new(view, 1.0, &[p]);
+    let d = sub(times(p, scale.factor), scale.eye);
+    outside_planes(d, view, &scale, margin * scale.factor)
 }
 
 /// Points of a cubic Bezier curve, times 6, from those of a B-spline.
@@ -123,7 +132,7 @@ fn bezier_points([p0, p1, p2, p3]: [Vec3; 4]) -> [Vec3; 4] {
 }
 
 /// Points of a bicubic Bezier patch, times 36, from those of a B-spline.
-fn bezier_patch(p: &[Vec3; 16]) -> [Vec3; 16] {
+pub fn bezier_patch(p: &[Vec3; 16]) -> [Vec3; 16] {
     let mut row = *p;
     for i in [0, 4, 8, 12] {
         row[i..i + 4].copy_from_slice(&bezier_points(from_fn(|j| p[i + j])));
@@ -135,6 +144,30 @@ fn bezier_patch(p: &[Vec3; 16]) -> [Vec3; 16] {
         }
     }
     b
+}
+
+fn between(a: Vec3, b: Vec3, t: f32) -> Vec3 {
+    let s = 1.0 - t;
+    from_fn(|c| a[c] * s + b[c] * t)
+}
+
+/// Value of the polar form of a cubic Bezier curve.
+fn blossom(b: [Vec3; 4], [r, s, t]: [f32; 3]) -> Vec3 {
+    let c = [between(b[0], b[1], r), between(b[1], b[2], r), between(b[2], b[3], r)];
+    between(between(c[0], c[1], s), between(c[1], c[2], s), t)
+}
+
+/// The Bezier points of the part between `low` and `high` of the parameters.
+pub fn bezier_part(b: &mut [Vec3; 16], low: [f32; 2], high: [f32; 2]) {
+    for (axis, (step, row)) in [(1, 4), (4, 1)].into_iter().enumerate() {
+        let (l, h) = (low[axis], high[axis]);
+        for i in 0..4 {
+            let curve = from_fn(|j| b[i * row + j * step]);
+            for (j, at) in [[l, l, l], [l, l, h], [l, h, h], [h, h, h]].into_iter().enumerate() {
+                b[i * row + j * step] = blossom(curve, at);
+            }
+        }
+    }
 }
 
 /// Bounds on the lengths of the tangents along one direction, and on the change of them.
@@ -164,26 +197,25 @@ fn tangents_of(b: &[Vec3; 16], step: usize, row: usize) -> ([Vec3; 12], TangentB
 }
 
 /// The x of the module's text.
-fn slack_of(u: &TangentBounds, v: &TangentBounds, level: &EmitLevel, is_uneven: bool, error: f32) -> f32 {
-    let (grain, skew, most) =
-        if is_uneven { (level.uneven_grain, level.skew, u.most.max(v.most)) } else { (level.grain, 0.0, 0.0) };
-    let noise = (((2.0 * error) * grain) * ((u.least + v.least) + most)) / (u.least * v.least);
-    let turn = skew * (u.change / v.least).max(v.change / u.least);
+fn slack_of(u: &TangentBounds, v: &TangentBounds, grain: &Grain, error: f32) -> f32 {
+    let most = if grain.is_uneven { u.most.max(v.most) } else { 0.0 };
+    let noise = (((2.0 * error) * grain.grain) * ((u.least + v.least) + most)) / (u.least * v.least);
+    let turn = grain.skew * (u.change / v.least).max(v.change / u.least);
     (noise + noise * noise) + (turn + TURN_MARGIN)
 }
 
-/// Whether nothing of a bicubic patch can be seen, by its B-spline control points. `is_uneven` where it has an edge with
-/// other points than its own rows.
-pub fn is_patch_unseen(points: &[Vec3; 16], view: &EmitView, level: &EmitLevel, is_uneven: bool) -> bool {
-    let b = bezier_patch(points);
-    let scale = Scale::new(view, 36.0, &b);
+/// Whether nothing of a bicubic patch can be seen, by its Bezier points times 36. `displacement` is how far its points may be
+/// moved; such patches are seen from behind.
+pub fn is_patch_unseen(b: &[Vec3; 16], view: &EmitView, grain: &Grain, cull_back: bool, displacement: f32) -> bool {
+    let scale = Scale::new(view, 36.0, b);
+    let margin = (36.0 * displacement) * scale.factor;
     let b = b.map(|point| times(point, scale.factor));
     let middle = sub(times(add(add(b[0], b[3]), add(b[12], b[15])), 0.25), scale.eye);
     let (mut planes, mut square_radius) = (31, 0.0_f32);
     for &point in &b {
         let d = sub(point, scale.eye);
         let around = sub(d, middle);
-        planes &= outside_planes(d, view, &scale);
+        planes &= outside_planes(d, view, &scale, margin);
         square_radius = square_radius.max(dot(around, around));
     }
     let (along_u, u) = tangents_of(&b, 1, 4);
@@ -194,8 +226,8 @@ pub fn is_patch_unseen(points: &[Vec3; 16], view: &EmitView, level: &EmitLevel, 
     let radius = square_radius.sqrt();
     let farthest = dot(middle, middle).sqrt() + radius;
     let error = scale.rounding + farthest * view.snap;
-    let least = (radius + farthest * slack_of(&u, &v, level, is_uneven, error)) + 2.0 * scale.eye_rounding;
-    planes != 0 || (view.cull_back != 0 && product > least)
+    let least = (radius + farthest * slack_of(&u, &v, grain, error)) + 2.0 * scale.eye_rounding;
+    planes != 0 || (cull_back && displacement == 0.0 && product > least)
 }
 
 fn is_triangle_turned([d0, d1, d2]: [Vec3; 3], error: f32, eye_rounding: f32) -> bool {
@@ -207,18 +239,37 @@ fn is_triangle_turned([d0, d1, d2]: [Vec3; 3], error: f32, eye_rounding: f32) ->
     dot(d0, cross(a, b)) > least
 }
 
-/// Whether nothing of flat quads between some points can be seen, split along either diagonal.
-pub fn are_quads_unseen(points: &[Vec3], quads: &[[usize; 4]], view: &EmitView) -> bool {
+/// Whether nothing can be seen of the triangles of a quad: 8 points, corners and the middles of split edges; where an edge is
+/// not split the middle is a corner.
+pub fn is_quad_unseen(
+    points: &[Vec3; 8],
+    split_edges: u32,
+    view: &EmitView,
+    cull_back: bool,
+    displacement: f32,
+) -> bool {
     let scale = Scale::new(view, 1.0, points);
-    let offsets: Vec<Vec3> = points.iter().map(|&p| sub(times(p, scale.factor), scale.eye)).collect();
-    let planes = offsets.iter().fold(31, |planes, &d| planes & outside_planes(d, view, &scale));
+    let margin = displacement * scale.factor;
+    let p = points.map(|p| sub(times(p, scale.factor), scale.eye));
+    let planes = p.iter().fold(31, |planes, &d| planes & outside_planes(d, view, &scale, margin));
+    if !cull_back || displacement != 0.0 {
+        return planes != 0;
+    }
     let error = scale.error(view);
-    let is_turned = |&[a, b, c, d]: &[usize; 4]| {
-        [[a, b, c], [a, c, d], [a, b, d], [b, c, d]]
-            .into_iter()
-            .all(|corners| is_triangle_turned(corners.map(|i| offsets[i]), error, scale.eye_rounding))
-    };
-    planes != 0 || (view.cull_back != 0 && quads.iter().all(is_turned))
+    let is_turned = |corners: [usize; 3]| is_triangle_turned(corners.map(|i| p[i]), error, scale.eye_rounding);
+    if split_edges == 0 {
+        return planes != 0 || [[0, 1, 2], [0, 2, 3], [0, 1, 3], [1, 2, 3]].into_iter().all(is_turned);
+    }
+    let fan = split_edges.trailing_zeros() as usize;
+    let all_turned = (0..4).filter(|&i| i != fan).all(|i| {
+        let next = (i + 1) % 4;
+        if split_edges >> i & 1 != 0 {
+            is_turned([4 + fan, i, 4 + i]) && is_turned([4 + fan, 4 + i, next])
+        } else {
+            is_turned([4 + fan, i, next])
+        }
+    });
+    planes != 0 || all_turned
 }
 
 #[cfg(test)]
@@ -253,17 +304,21 @@ mod tests {
 
     /// A view of everything from `eye`, without a grid.
     fn view_from(eye: Vec3) -> EmitView {
-        EmitView { eye, cull_back: 1, ..EmitView::default() }
+        EmitView { eye, cull: 2, ..EmitView::default() }
+    }
+
+    fn is_unseen(points: &[Vec3; 16], eye: Vec3, grain: &Grain) -> bool {
+        is_patch_unseen(&bezier_patch(points), &view_from(eye), grain, true, 0.0)
     }
 
     /// Patches that are turned away from an eye, and it.
-    fn turned_away(level: &EmitLevel, is_uneven: bool) -> Vec<([[f64; 3]; 16], [f64; 3])> {
+    fn turned_away(grain: &Grain) -> Vec<([[f64; 3]; 16], [f64; 3])> {
         let mut random = Random(7);
         let mut found = Vec::new();
         for _ in 0..4000 {
             let points = random.patch();
             let eye = [6.0 * random.number(), 6.0 * random.number(), -4.0 * random.part()].map(|c| c as f32);
-            if is_patch_unseen(&points, &view_from(eye), level, is_uneven) {
+            if is_unseen(&points, eye, grain) {
                 found.push((points.map(|p| p.map(f64::from)), eye.map(f64::from)));
             }
         }
@@ -280,7 +335,7 @@ mod tests {
 
     #[test]
     fn every_triangle_along_u_and_v_of_a_patch_that_is_turned_away_shows_its_back() {
-        let found = turned_away(&EmitLevel { grain: 1.0, ..EmitLevel::default() }, false);
+        let found = turned_away(&Grain { grain: 1.0, skew: 0.0, is_uneven: false });
         assert!(found.len() > 400, "only {} patches are turned away", found.len());
         let mut random = Random(11);
         for (patch, eye) in &found {
@@ -299,8 +354,7 @@ mod tests {
     #[test]
     fn every_triangle_of_an_uneven_ring_of_a_patch_that_is_turned_away_shows_its_back() {
         const SKEW: f64 = 1.5;
-        let level = EmitLevel { grain: 1.0, uneven_grain: 1.0, skew: SKEW as f32 };
-        let found = turned_away(&level, true);
+        let found = turned_away(&Grain { grain: 1.0, skew: SKEW as f32, is_uneven: true });
         assert!(found.len() > 100, "only {} patches are turned away", found.len());
         let mut random = Random(13);
         let mut tried = 0;
@@ -328,20 +382,20 @@ mod tests {
 
     #[test]
     fn what_cannot_be_computed_is_kept() {
-        let level = EmitLevel { grain: 1.0, ..EmitLevel::default() };
+        let grain = Grain { grain: 1.0, skew: 0.0, is_uneven: false };
         let flat: [Vec3; 16] = from_fn(|i| [(i % 4) as f32, (i / 4) as f32, 0.0]);
-        assert!(is_patch_unseen(&flat, &view_from([1.5, 1.5, -9.0]), &level, false));
-        assert!(!is_patch_unseen(&flat, &view_from([1.5, 1.5, 9.0]), &level, false));
+        assert!(is_unseen(&flat, [1.5, 1.5, -9.0], &grain));
+        assert!(!is_unseen(&flat, [1.5, 1.5, 9.0], &grain));
         for scale in [1e-37, 1e-30, 1e30, 1e37] {
             let [eye] = [[1.5, 1.5, 9.0]].map(|eye| times(eye, scale));
-            assert!(!is_patch_unseen(&flat.map(|p| times(p, scale)), &view_from(eye), &level, false));
+            assert!(!is_unseen(&flat.map(|p| times(p, scale)), eye, &grain));
         }
         for bad in [f32::NAN, f32::INFINITY] {
             let mut points = flat;
             points[5][0] = bad;
-            assert!(!is_patch_unseen(&points, &view_from([1.5, 1.5, -9.0]), &level, false));
+            assert!(!is_unseen(&points, [1.5, 1.5, -9.0], &grain));
         }
-        assert!(!is_patch_unseen(&[[1.0; 3]; 16], &view_from([1.5, 1.5, -9.0]), &level, false));
-        assert!(!are_quads_unseen(&[[1.0; 3]; 4], &[[0, 1, 2, 3]], &view_from([1.5, 1.5, -9.0])));
+        assert!(!is_unseen(&[[1.0; 3]; 16], [1.5, 1.5, -9.0], &grain));
+        assert!(!is_quad_unseen(&[[1.0; 3]; 8], 0, &view_from([1.5, 1.5, -9.0]), true, 0.0));
     }
 }

@@ -6,7 +6,7 @@ use glam::{Mat4, Vec3};
 use crate::{Bounds, Error};
 
 /// Default view: vertical field of view, degrees.
-const DEFAULT_FOV_Y_DEGREES: f32 = 45.0;
+pub(crate) const DEFAULT_FOV_Y_DEGREES: f32 = 45.0;
 /// Default view: direction from the centre of the box to the eye, not normalised.
 const DEFAULT_DIRECTION: glam::DVec3 = glam::DVec3::new(1.0, 0.6, 1.2);
 /// Default view: distance from the centre of the box to the eye, in diagonals of the box.

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum Error {
     /// The file is missing or cannot be read.
-    #[error("{}: cannot be read: {source}; expected an .obj file", .path.display())]
+    #[error("{}: cannot be read: {source}; expected an .obj or .json file", .path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -15,13 +15,13 @@ pub enum Error {
         source: io::Error,
     },
     /// The path names a directory.
-    #[error("{}: found a directory, expected an .obj file", .path.display())]
+    #[error("{}: found a directory, expected an .obj or .json file", .path.display())]
     Directory {
         /// The directory.
         path: PathBuf,
     },
     /// No reader for the file's extension.
-    #[error("{}: found a file of unknown format, expected an .obj file", .path.display())]
+    #[error("{}: found a file of unknown format, expected an .obj or .json file", .path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
@@ -37,6 +37,28 @@ pub enum Error {
         found: String,
         /// What should stand there.
         expected: String,
+    },
+    /// A scene file of JSON is wrong in one place.
+    #[error("{}: {place}: found {found}, expected {expected}", .path.display())]
+    Misplaced {
+        /// The file.
+        path: PathBuf,
+        /// Line and column, counted from 1, or the element: `instances[3].mesh`.
+        place: String,
+        /// What stands there.
+        found: String,
+        /// What should stand there.
+        expected: String,
+    },
+    /// A mesh of a scene file cannot be read.
+    #[error("{}: {place}: {source}", .path.display())]
+    Mesh {
+        /// The scene file.
+        path: PathBuf,
+        /// The element that names the mesh' file.
+        place: String,
+        /// What is wrong with the mesh' file.
+        source: Box<Error>,
     },
     /// A camera that sees nothing.
     #[error("camera: found {found}, expected {expected}")]
@@ -54,6 +76,28 @@ pub enum Error {
         /// The names there are.
         expected: String,
     },
+    /// No camera path of that name.
+    #[error("camera path: found the name {found:?}, expected {expected}")]
+    UnknownPath {
+        /// The name asked for.
+        found: String,
+        /// The names there are.
+        expected: String,
+    },
+}
+
+/// Most names that a message lists.
+const NAMES_SHOWN: usize = 10;
+
+/// What was expected of a name: one of those that there are.
+pub(crate) fn name_list<'a>(names: impl Iterator<Item = &'a str>, kind: &str) -> String {
+    let mut names = names.map(|name| format!("{name:?}"));
+    let shown: Vec<String> = names.by_ref().take(NAMES_SHOWN).collect();
+    match (shown.as_slice(), names.count()) {
+        ([], _) => format!("no name: the scene has no {kind}"),
+        (names, 0) => format!("one of {}", names.join(", ")),
+        (names, others) => format!("one of {} and {others} others", names.join(", ")),
+    }
 }
 
 fn line_prefix(line: &Option<u32>) -> String {

@@ -1,6 +1,7 @@
-//! Files to scenes: meshes and cameras.
+//! Files to scenes: meshes, where they stand, and cameras.
 //!
-//! [`load`] picks the reader by the file's extension and returns a [`Scene`]; [`read_obj`] does the same from memory.
+//! [`load`] picks the reader by the file's extension and returns a [`Scene`]; [`read_obj`] and [`read_json`] do the same
+//! from memory.
 //! Everything that is read is checked here: a scene that comes back names no vertex or face that it lacks, and has
 //! only finite coordinates. What is odd but harmless is a [`Warning`] in the scene; what is wrong is an [`Error`] that
 //! says in one line which file, which line, what was found and what was expected.
@@ -8,22 +9,33 @@
 //! | module | idea |
 //! |---|---|
 //! | `scene` | what a file holds once read |
+//! | `instance` | where a mesh stands |
 //! | `camera` | a pinhole camera, its matrices and the default view |
+//! | `path` | a camera that moves from frame to frame |
 //! | `bounds` | a bounding box |
 //! | `obj` | the OBJ reader, with OpenSubdiv's subdivision tags |
+//! | `json` | the reader of our own scene files, which place meshes of OBJ files |
 //! | `error` | what can go wrong |
 mod bounds;
 mod camera;
 mod error;
+mod instance;
+mod json;
 mod obj;
+mod path;
 mod scene;
 
 pub use bounds::Bounds;
 pub use camera::Camera;
 pub use error::Error;
+pub use instance::Instance;
+pub use json::{MAX_INSTANCES, read_json};
+pub use path::{CameraPath, Key, MAX_FRAMES};
 pub use scene::{FaceVaryingChannel, Mesh, Scene, Warning};
 
 use std::path::Path;
+
+use glam::Affine3A;
 
 /// How files are read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,20 +44,16 @@ pub struct LoadOptions {
     pub repair: bool,
 }
 
-/// Reads a scene file.
+/// Reads a scene file: an `.obj`, or a `.json` and the OBJ files that it names.
 ///
 /// # Errors
-/// When the file cannot be read, is of no known format, or its content is wrong (see [`Error`]).
+/// When a file cannot be read, is of no known format, or its content is wrong (see [`Error`]).
 pub fn load(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Scene, Error> {
     let path = path.as_ref();
-    let unreadable = |source| Error::Unreadable { path: path.to_owned(), source };
-    if std::fs::metadata(path).map_err(unreadable)?.is_dir() {
-        return Err(Error::Directory { path: path.to_owned() });
+    if has_extension(path, "json") {
+        return read_json(path, &file_bytes(path)?, options);
     }
-    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj")) {
-        return Err(Error::UnknownFormat { path: path.to_owned() });
-    }
-    read_obj(path, &std::fs::read(path).map_err(unreadable)?, options)
+    read_obj(path, &obj_bytes(path)?, options)
 }
 
 /// Reads a scene from the bytes of an OBJ file. `path` names the scene (its file stem) and stands in error messages.
@@ -54,11 +62,47 @@ pub fn load(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Scene, Erro
 /// When the content is wrong (see [`Error`]).
 pub fn read_obj(path: impl AsRef<Path>, bytes: &[u8], options: &LoadOptions) -> Result<Scene, Error> {
     let path = path.as_ref();
-    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    obj::read(&name, bytes, options).map_err(|fault| Error::Malformed {
+    let (mesh, warnings) = read_mesh(path, bytes, options)?;
+    let instance = Instance { name: mesh.name.clone(), mesh: 0, transform: Affine3A::IDENTITY };
+    Ok(Scene { name: stem(path), meshes: vec![mesh], instances: vec![instance], warnings, ..Scene::default() })
+}
+
+/// The mesh of an OBJ file's bytes.
+fn read_mesh(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<(Mesh, Vec<Warning>), Error> {
+    obj::read(&stem(path), bytes, options).map_err(|fault| Error::Malformed {
         path: path.to_owned(),
         line: fault.line,
         found: fault.found,
         expected: fault.expected,
     })
+}
+
+/// What an OBJ file holds; none but those are opened.
+fn obj_bytes(path: &Path) -> Result<Vec<u8>, Error> {
+    refuse_directory(path)?;
+    if !has_extension(path, "obj") {
+        return Err(Error::UnknownFormat { path: path.to_owned() });
+    }
+    file_bytes(path)
+}
+
+fn file_bytes(path: &Path) -> Result<Vec<u8>, Error> {
+    refuse_directory(path)?;
+    std::fs::read(path).map_err(|source| Error::Unreadable { path: path.to_owned(), source })
+}
+
+fn refuse_directory(path: &Path) -> Result<(), Error> {
+    match std::fs::metadata(path) {
+        Ok(metadata) if metadata.is_dir() => Err(Error::Directory { path: path.to_owned() }),
+        Ok(_) => Ok(()),
+        Err(source) => Err(Error::Unreadable { path: path.to_owned(), source }),
+    }
+}
+
+fn has_extension(path: &Path, wanted: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -3,17 +3,23 @@ use std::fmt;
 
 use planish_subdiv::mesh::ControlMesh;
 
-use crate::{Bounds, Camera, Error};
+use crate::error::name_list;
+use crate::{Bounds, Camera, CameraPath, Error, Instance};
 
-/// A scene: meshes, and the cameras to see them with.
+/// A scene: meshes, where they stand, and the cameras to see them with.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
     /// The file's stem.
     pub name: String,
     /// The meshes, in file order. One OBJ file is one mesh, whatever its groups, objects and materials.
     pub meshes: Vec<Mesh>,
+    /// Where the meshes stand, in file order: a mesh may stand in many places, or in none. An OBJ file's stands in one, as
+    /// it is.
+    pub instances: Vec<Instance>,
     /// The file's own cameras; an OBJ file has none.
     pub cameras: Vec<Camera>,
+    /// The file's own camera paths; an OBJ file has none.
+    pub paths: Vec<CameraPath>,
     /// What is odd in the file but does not keep it from being read, in the order in which it was noticed.
     pub warnings: Vec<Warning>,
 }
@@ -57,9 +63,18 @@ impl fmt::Display for Warning {
 }
 
 impl Scene {
-    /// The box around all control points of all cages, those that no face uses included; none when there are none.
+    /// The box in world space around the boxes of all instances; none when there are none.
+    ///
+    /// An instance's box is that of its mesh, all control points included, with its corners transformed: exact where the
+    /// transform only moves, scales and mirrors along the axes, and else somewhat larger than need be, at the cost of eight
+    /// points an instance.
     pub fn bounds(&self) -> Option<Bounds> {
-        Bounds::of(self.meshes.iter().flat_map(|mesh| mesh.control_mesh.positions.iter().copied()))
+        let meshes: Vec<Option<Bounds>> = self.meshes.iter().map(Mesh::bounds).collect();
+        let boxes = self.instances.iter().filter_map(|instance| {
+            let mesh = meshes.get(instance.mesh).copied().flatten()?;
+            Some(instance.bounds(&mesh))
+        });
+        boxes.reduce(Bounds::union)
     }
 
     /// The camera called `name`; without a name the scene's first camera, else the default view.
@@ -68,12 +83,12 @@ impl Scene {
     /// When the scene has no camera of that name, or the default view does not exist ([`Camera::default_view`]).
     pub fn camera(&self, name: Option<&str>) -> Result<Camera, Error> {
         match name {
-            Some(name) => self
-                .cameras
-                .iter()
-                .find(|camera| camera.name == name)
-                .cloned()
-                .ok_or_else(|| Error::UnknownCamera { found: name.to_owned(), expected: self.camera_names() }),
+            Some(name) => {
+                self.cameras.iter().find(|camera| camera.name == name).cloned().ok_or_else(|| Error::UnknownCamera {
+                    found: name.to_owned(),
+                    expected: name_list(self.cameras.iter().map(|camera| camera.name.as_str()), "cameras"),
+                })
+            }
             None => match self.cameras.first() {
                 Some(camera) => Ok(camera.clone()),
                 None => self.default_view(),
@@ -92,11 +107,21 @@ impl Scene {
         }
     }
 
-    fn camera_names(&self) -> String {
-        if self.cameras.is_empty() {
-            return "no name: the scene has no cameras".to_owned();
-        }
-        let names: Vec<String> = self.cameras.iter().map(|camera| format!("{:?}", camera.name)).collect();
-        format!("one of {}", names.join(", "))
+    /// The camera path called `name`.
+    ///
+    /// # Errors
+    /// When the scene has no path of that name.
+    pub fn path(&self, name: &str) -> Result<&CameraPath, Error> {
+        self.paths.iter().find(|path| path.name() == name).ok_or_else(|| Error::UnknownPath {
+            found: name.to_owned(),
+            expected: name_list(self.paths.iter().map(CameraPath::name), "camera paths"),
+        })
+    }
+}
+
+impl Mesh {
+    /// The box around all control points, those that no face uses included; none when there are none.
+    pub fn bounds(&self) -> Option<Bounds> {
+        Bounds::of(self.control_mesh.positions.iter().copied())
     }
 }

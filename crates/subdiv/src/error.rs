@@ -61,6 +61,20 @@ pub enum Error {
         /// The vertex.
         vertex: u32,
     },
+    /// There are densities, but not one a vertex.
+    #[error("{found} densities are given for {expected} vertices; expected one a vertex, or none")]
+    DensityCount {
+        /// Number of vertices.
+        expected: u64,
+        /// Densities found.
+        found: u64,
+    },
+    /// A density is NaN, infinite or below zero.
+    #[error("the density of vertex {vertex} (from 0) is not finite, or below zero")]
+    Density {
+        /// The vertex.
+        vertex: u32,
+    },
     /// The tables would need indices of more than 32 bits.
     #[error("level {level} would have {count} elements; at most 2^31 can be indexed")]
     TooLarge {

@@ -1,7 +1,8 @@
 //! Control meshes, subdivision rules, refinement, tables and the CPU evaluator.
 //!
 //! Layers, each using only those before it: [`mesh`] (the cage), [`rules`] (masks, no topology), [`topology`] (one level
-//! as half-edges), [`refine`] (feature-adaptive levels), then [`tables`] (what the GPU reads) and [`eval`] (f64 evaluator).
+//! as half-edges), [`refine`] (feature-adaptive levels), then [`tables`] (what the GPU reads), [`selection`] (what a frame
+//! makes of them) and [`eval`] (f64 evaluator).
 
 mod base_level;
 pub mod edits;
@@ -13,6 +14,7 @@ pub mod patch;
 pub mod refine;
 mod ring;
 pub mod rules;
+pub mod selection;
 mod sharpness;
 pub mod stencil;
 pub mod tables;

@@ -97,8 +97,10 @@ fn mask_weights(rule: LimitRule, mut push: impl FnMut([f64; 3])) {
             }
         }
         LimitRule::Boundary(face_count) | LimitRule::Corner(face_count) => {
-            let across = BoundaryTangent::new(face_count);
-            let end = if rule == LimitRule::Corner(face_count) { 0.0 } else { rules::CREASE_LIMIT_END };
+            let (across, end) = match rule {
+                LimitRule::Corner(_) => (BoundaryTangent::at_corner(face_count), 0.0),
+                _ => (BoundaryTangent::new(face_count), rules::CREASE_LIMIT_END),
+            };
             push([1.0 - 2.0 * end, 0.0, across.vertex()]);
             for i in 0..face_count {
                 let first = if i == 0 { 1.0 } else { 0.0 };

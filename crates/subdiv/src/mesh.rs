@@ -135,6 +135,8 @@ pub struct ControlMesh {
     pub holes: Vec<u32>,
     /// Hierarchical edits.
     pub edits: Vec<HierarchicalEdit>,
+    /// Scales the density of tessellation, one a vertex; empty: 1 everywhere.
+    pub density: Vec<f32>,
     /// Options.
     pub options: MeshOptions,
 }
@@ -162,8 +164,8 @@ impl ControlMesh {
         self.face_sizes.iter().map(|&n| if n == 4 { 1 } else { u64::from(n) }).sum()
     }
 
-    /// Checks what refinement relies on: indices in range, at least three different vertices a face, finite positions,
-    /// edits of what exists.
+    /// Checks what refinement relies on: indices in range, at least three different vertices a face, finite positions
+    /// and densities, edits of what exists.
     pub fn validate(&self) -> Result<(), Error> {
         if self.face_sizes.is_empty() {
             return Err(Error::Empty);
@@ -178,6 +180,15 @@ impl ControlMesh {
         }
         if let Some(vertex) = self.positions.iter().position(|p| !p.iter().all(|c| c.abs() <= MAX_COORDINATE)) {
             return Err(Error::NotFinite { vertex: vertex as u32 });
+        }
+        if !self.density.is_empty() && self.density.len() != self.positions.len() {
+            return Err(Error::DensityCount {
+                expected: self.positions.len() as u64,
+                found: self.density.len() as u64,
+            });
+        }
+        if let Some(vertex) = self.density.iter().position(|&d| !(0.0..f32::INFINITY).contains(&d)) {
+            return Err(Error::Density { vertex: vertex as u32 });
         }
         let in_range = |what, index: u32, count: usize| {
             let count = count as u32;

@@ -11,8 +11,8 @@ use crate::topology::{Level, Location, NONE};
 /// | `flags` | 0-4 | depth: halvings of the Ptex face |
 /// | | 5-9 | level of subdivision |
 /// | | 10-13 | boundary edges and infinite creases: their row of control points is a reflection |
-/// | | 14-17 | transition edges: the neighbour was split |
-/// | | 18-21 | leaf edges: the neighbour is an irregular leaf of the last level |
+/// | | 14-17 | transition edges: the neighbour was split, in this frame; 0 in the tables |
+/// | | 18-21 | leaf edges: the neighbour is an irregular leaf at the end of refinement, whatever the density |
 /// | | 22-25 | crease edge: a semi-sharp crease passes along it; at most one |
 ///
 /// Edge i runs from corner i to corner i + 1: 0 is v = 0, 1 is u = 1, 2 is v = 1, 3 is u = 0.
@@ -24,9 +24,10 @@ pub struct PatchInfo {
     pub level: u8,
     /// Boundary edges, one bit each.
     pub boundary: u8,
-    /// Edges whose neighbour was split, one bit each.
+    /// Edges whose neighbour was split, one bit each: a frame's choice, so 0 in the tables.
     pub transition: u8,
-    /// Edges whose neighbour is an irregular leaf, one bit each.
+    /// Edges that are drawn as one segment because refinement ends at the other side, one bit each: an irregular face of
+    /// `max_level` or deeper that nothing forces lies across, or across the edge of the parent that this is a half of.
     pub leaf: u8,
     /// The edge that a semi-sharp crease passes along, one bit each.
     pub crease: u8,
@@ -69,9 +70,12 @@ pub struct RegularPatch {
     pub info: PatchInfo,
     /// Sharpness of the crease edge, if there is one; else 0.
     pub sharpness: f32,
+    /// Number of each edge that the face across may split, among the split edges of [`crate::tables::Tables`]; else
+    /// [`NONE`].
+    pub edges: [u32; 4],
 }
 
-/// An irregular face of the last level, drawn between limit points (FAS section 4.1).
+/// A face of uniform refinement's last level, drawn between limit points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FillingQuad {
     /// Limit points at (0,0), (1,0), (1,1), (0,1).

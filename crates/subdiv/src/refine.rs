@@ -37,9 +37,6 @@ pub struct RefineOptions {
     pub max_level: u32,
     /// Split every face of every level (the global refinement that FAS section 8.1 compares with).
     pub uniform: bool,
-    /// Keep one more level of points under the irregular faces of the last level, for the limits of the middles of
-    /// their edges: fractional-even spacing has two segments an edge at least.
-    pub midpoints: bool,
     /// Which creases are not refined.
     pub crease_patches: CreasePatches,
 }
@@ -67,18 +64,23 @@ impl Split {
 /// A cage refined towards its irregularities.
 #[derive(Clone, Debug)]
 pub struct Refinement {
-    /// Levels 0 to [`Self::last_level`], and one more if there are midpoints.
+    /// Levels 0 to [`Self::last_level`].
     pub levels: Vec<Level>,
     /// `splits[k]` made level k + 1.
     pub splits: Vec<Split>,
-    /// For each level the faces that were split: the irregular ones, and those that an edit of a finer level reaches; of
-    /// the last level, the irregular leaves.
+    /// For each level the faces that are no patches of it, ascending: drawn ones that have no patch, or all with uniform
+    /// refinement, and the forced ones.
     pub irregular_faces: Vec<Vec<u32>>,
+    /// For each level those of them that were split: all of them, but from `max_level` on the forced ones alone.
+    pub split_faces: Vec<Vec<u32>>,
+    /// For each level the faces that are split at any density: drawn n-gons, and those that an edit of a finer level
+    /// reaches.
+    pub forced_faces: Vec<Vec<u32>>,
     /// The mesh's hierarchical edits.
     pub edits: Vec<HierarchicalEdit>,
     /// For each level the vertices that hierarchical edits move, and the number of the edit, in the edits' order.
     pub moved_points: Vec<Vec<(u32, u32)>>,
-    /// The level at which irregular faces are left.
+    /// The deepest level: `max_level`, or deeper where n-gons or edits ask for it.
     pub last_level: u32,
     /// What was asked for.
     pub options: RefineOptions,
@@ -96,29 +98,46 @@ impl Refinement {
         let last_level = options.max_level.max(u32::from(has_non_quads)).max(edits::deepest_level(mesh));
         let mut path_edits = PathEdits::new(mesh);
         let mut moved_points = vec![path_edits.apply(&mut levels[0])];
-        let (mut splits, mut irregular_faces) = (Vec::new(), Vec::new());
+        let mut splits = Vec::new();
+        let (mut irregular_faces, mut split_faces, mut forced_faces) = (Vec::new(), Vec::new(), Vec::new());
         for k in 0..=last_level {
             let level = &levels[k as usize];
+            let mut forced = path_edits.forced_faces(level);
+            forced.extend((0..level.drawn_count).filter(|&face| level.is_drawn(face) && level.sides(face) != 4));
             let mut irregular: Vec<u32> = (0..level.drawn_count)
                 .filter(|&face| level.is_drawn(face) && (options.uniform || !is_leaf_patch(level, face, options)))
                 .collect();
-            let forced = path_edits.forced_faces(level);
-            if !forced.is_empty() {
-                irregular.extend(forced);
-                irregular.sort_unstable();
-                irregular.dedup();
+            irregular.extend(&forced);
+            for faces in [&mut forced, &mut irregular] {
+                faces.sort_unstable();
+                faces.dedup();
             }
-            if k < last_level || options.midpoints {
-                let (split, mut child) = split_level(level, &irregular, k + 1)?;
-                path_edits.descend(level, &irregular);
+            let split_here = if options.uniform || k < options.max_level { irregular.clone() } else { forced.clone() };
+            if k < last_level {
+                let core =
+                    if split_here.len() < irregular.len() { core_beside_non_quads(level, &irregular) } else { vec![] };
+                let (split, mut child) = split_level_around(level, &split_here, core, k + 1)?;
+                path_edits.descend(level, &split_here);
                 moved_points.push(path_edits.apply(&mut child));
                 splits.push(split);
                 levels.push(child);
             }
             irregular_faces.push(irregular);
+            split_faces.push(if k < last_level { split_here } else { Vec::new() });
+            forced_faces.push(forced);
         }
-        let refinement =
-            Self { levels, splits, irregular_faces, edits: mesh.edits.clone(), moved_points, last_level, options };
+        let edits = mesh.edits.clone();
+        let refinement = Self {
+            levels,
+            splits,
+            irregular_faces,
+            split_faces,
+            forced_faces,
+            edits,
+            moved_points,
+            last_level,
+            options,
+        };
         // Rows average fewer than 8 indices: what the tables number stays within 32 bits.
         let count = refinement.splits.iter().map(|split| split.point_count() as u64).sum::<u64>();
         if 8 * count >= u64::from(u32::MAX) {
@@ -127,14 +146,19 @@ impl Refinement {
         Ok(refinement)
     }
 
-    /// Whether a face of a level was split, or is left as an irregular leaf at the last level. Faces are in ascending order.
-    pub fn irregular_flags(&self, level: u32) -> Vec<bool> {
+    /// Which faces of a level are among these.
+    pub(crate) fn flags(&self, level: u32, faces: &[u32]) -> Vec<bool> {
         let mut flags = vec![false; self.levels[level as usize].face_count() as usize];
-        for &face in &self.irregular_faces[level as usize] {
-            flags[face as usize] = true;
-        }
+        faces.iter().for_each(|&face| flags[face as usize] = true);
         flags
     }
+}
+
+/// Corners of quads at which no limit mask exists because a face there is no quad: one exists one level down.
+fn core_beside_non_quads(level: &Level, faces: &[u32]) -> Vec<u32> {
+    let quads = faces.iter().filter(|&&face| level.sides(face) == 4);
+    let corners = quads.flat_map(|&face| level.vertices(face));
+    corners.copied().filter(|&vertex| !level.tag(vertex).touches_only_quads()).collect()
 }
 
 /// Whether a face's limit is one patch of its level.
@@ -162,6 +186,16 @@ struct Children {
 
 /// Splits the given faces of a level; returns what became of what, and the next level.
 pub(crate) fn split_level(parent: &Level, faces: &[u32], child_level: u32) -> Result<(Split, Level), Error> {
+    split_level_around(parent, faces, Vec::new(), child_level)
+}
+
+/// The same, with further core vertices besides the corners of the faces.
+fn split_level_around(
+    parent: &Level,
+    faces: &[u32],
+    further_core: Vec<u32>,
+    child_level: u32,
+) -> Result<(Split, Level), Error> {
     let mut split = Split::default();
     let half_edge_count = parent.origins.len();
     let mut children = Children {
@@ -182,13 +216,10 @@ pub(crate) fn split_level(parent: &Level, faces: &[u32], child_level: u32) -> Re
             } else {
                 Location { ptex_face: location.ptex_face + i, ..location }
             });
-            let vertex = parent.origin(half_edge);
-            if children.vertices[vertex as usize] == NONE {
-                children.vertices[vertex as usize] = split.vertices.len() as u32;
-                split.vertices.push(vertex);
-            }
+            add_core(&mut split, &mut children, parent.origin(half_edge));
         }
     }
+    further_core.into_iter().for_each(|vertex| add_core(&mut split, &mut children, vertex));
     add_chaikin_ends(parent, &mut split, &mut children);
     collect_rings(parent, &mut split, &mut children);
     let half_edges = 4 * split.child_corners.len() as u64;
@@ -206,6 +237,13 @@ pub(crate) fn split_level(parent: &Level, faces: &[u32], child_level: u32) -> Re
     Ok((split, child))
 }
 
+fn add_core(split: &mut Split, children: &mut Children, vertex: u32) {
+    if children.vertices[vertex as usize] == NONE {
+        children.vertices[vertex as usize] = split.vertices.len() as u32;
+        split.vertices.push(vertex);
+    }
+}
+
 /// Chaikin's rule looks at all creases at both ends of an edge: where one end of a semi-sharp edge is core, the other
 /// must have all its edges too.
 fn add_chaikin_ends(parent: &Level, split: &mut Split, children: &mut Children) {
@@ -219,9 +257,8 @@ fn add_chaikin_ends(parent: &Level, split: &mut Split, children: &mut Children) 
         }
         for spoke in parent.all_spokes(vertex) {
             let end = parent.head(spoke);
-            if rules::is_semi_sharp(parent.sharpness(spoke)) && children.vertices[end as usize] == NONE {
-                children.vertices[end as usize] = split.vertices.len() as u32;
-                split.vertices.push(end);
+            if rules::is_semi_sharp(parent.sharpness(spoke)) {
+                add_core(split, children, end);
             }
         }
     }
@@ -255,7 +292,7 @@ fn collect_rings(parent: &Level, split: &mut Split, children: &mut Children) {
 
 /// The place of corner `j` of a child face (0: the parent's vertex, then counter-clockwise: edge point, centre, edge
 /// point) among its half-edges. Children of quads are turned so that their u and v run as their parent's.
-fn child_half_edge(child_face: u32, parent: &Level, parent_half_edge: u32, j: u32) -> u32 {
+pub(crate) fn child_half_edge(child_face: u32, parent: &Level, parent_half_edge: u32, j: u32) -> u32 {
     let edges = parent.half_edges(parent.face(parent_half_edge));
     let turn = if edges.end - edges.start == 4 { parent_half_edge - edges.start } else { 0 };
     4 * child_face + (j + turn) % 4

@@ -3,7 +3,7 @@
 //! Refinement masks are FAS section 3.1 with the face points substituted, so that every weight is one of the level
 //! before. Sharpness: DeRose, Kass and Truong 1998, in OpenSubdiv's reading: where rules change from one level to the
 //! next, the old and the new one are blended by the sharpness that reached zero. Limit masks: Halstead, Kass and DeRose
-//! 1993 (smooth vertices), Biermann, Levin and Zorin 2000 (boundary tangents).
+//! 1993 (smooth vertices), derived here (boundary tangents), Biermann, Levin and Zorin 2000 (tangents at corners).
 
 use std::f64::consts::PI;
 
@@ -200,49 +200,79 @@ pub fn edge_face_weight(triangles: TriangleSubdivision, sides: [u32; 2]) -> f64 
     0.5 * (of(sides[0]) + of(sides[1]))
 }
 
-/// Weights of the tangent across a boundary of `face_count` faces (Biermann et al. 2000, appendix).
+/// Weights of the tangent across a boundary or crease with `face_count` faces on this side.
 #[derive(Clone, Copy, Debug)]
 pub struct BoundaryTangent {
     face_count: u32,
-    scale: f64,
+    vertex: f64,
+    /// Of the two edges along the boundary.
+    end: f64,
+    /// Of an edge inside, before the sine of its angle.
+    inner_edge: f64,
+    /// Of an opposite vertex, before the sum of the sines of its face's edges.
+    face: f64,
 }
 
 impl BoundaryTangent {
-    /// The mask of a boundary vertex with this many faces on it.
+    /// At a vertex of the crease rule: the left eigenvector of the largest eigenvalue below 1 that has weights inside. So it
+    /// is the same tangent at every level. Biermann et al. 2000 give that of their own rules instead, which agrees with
+    /// Catmull-Clark's for two faces.
+    ///
+    /// With t = pi / `face_count`: inside it has the sines of a closed ring's ([`smooth_tangents`]) and its eigenvalue
+    /// l = (cos t + 5 + sqrt((cos t + 9) (cos t + 1))) / 16; the columns of the boundary's edges and of the vertex,
+    /// (l - 1/2) x - y / 8 = l sin t and (l - 3/4) y - x = (6 l - 1) cot(t / 2), give the rest.
     pub fn new(face_count: u32) -> Self {
-        let theta = PI / f64::from(face_count.max(2));
-        Self { face_count, scale: 1.0 / (f64::from(face_count) * (3.0 + theta.cos())) }
+        if face_count == 1 {
+            return Self { face_count, vertex: -2.0, end: 1.0, inner_edge: 0.0, face: 0.0 };
+        }
+        let theta = PI / f64::from(face_count);
+        let (sin, cos) = theta.sin_cos();
+        let scale = 1.0 / (f64::from(face_count) * (3.0 + cos));
+        let value = (cos + 5.0 + ((cos + 9.0) * (cos + 1.0)).sqrt()) / 16.0;
+        let determinant = (value - 1.0) * (value - 0.25);
+        let (of_end, of_vertex) = (value * sin, (6.0 * value - 1.0) / (0.5 * theta).tan());
+        Self {
+            face_count,
+            vertex: scale * ((value - 0.5) * of_vertex + of_end) / determinant,
+            end: scale * ((value - 0.75) * of_end + 0.125 * of_vertex) / determinant,
+            inner_edge: scale * (16.0 * value - 4.0),
+            face: scale,
+        }
+    }
+
+    /// At an interpolated vertex (Biermann et al. 2000, appendix). With several faces there is no tangent plane in general.
+    pub fn at_corner(face_count: u32) -> Self {
+        if face_count == 1 {
+            return Self::new(1);
+        }
+        let (sin, cos) = (PI / f64::from(face_count)).sin_cos();
+        let scale = 1.0 / (f64::from(face_count) * (3.0 + cos));
+        Self {
+            face_count,
+            vertex: scale * 4.0 * (cos + 1.0) / sin * (cos - 1.0),
+            end: -scale * (cos + 1.0) / sin * (1.0 + 2.0 * cos),
+            inner_edge: 4.0 * scale,
+            face: scale,
+        }
     }
 
     /// Weight of the vertex itself.
     pub fn vertex(&self) -> f64 {
-        if self.face_count == 1 {
-            return -2.0;
-        }
-        let (sin, cos) = (PI / f64::from(self.face_count)).sin_cos();
-        4.0 * (cos + 1.0) / sin * (cos - 1.0) * self.scale
+        self.vertex
     }
 
     /// Weight of edge i of 0..=`face_count`; the first and the last are the boundary's.
     pub fn edge(&self, i: u32) -> f64 {
-        if self.face_count == 1 {
-            return 1.0;
-        }
-        let theta = PI / f64::from(self.face_count);
-        if i == 0 || i == self.face_count {
-            let (sin, cos) = theta.sin_cos();
-            return -(cos + 1.0) / sin * (1.0 + 2.0 * cos) * self.scale;
-        }
-        4.0 * (f64::from(i) * theta).sin() * self.scale
+        if i == 0 || i == self.face_count { self.end } else { self.inner_edge * self.sine(i) }
     }
 
     /// Weight of the vertex opposite in face i, between the edges i and i + 1.
     pub fn face(&self, i: u32) -> f64 {
-        if self.face_count == 1 {
-            return 0.0;
-        }
-        let theta = PI / f64::from(self.face_count);
-        ((f64::from(i) * theta).sin() + (f64::from(i + 1) * theta).sin()) * self.scale
+        self.face * (self.sine(i) + self.sine(i + 1))
+    }
+
+    fn sine(&self, i: u32) -> f64 {
+        (PI * f64::from(i) / f64::from(self.face_count)).sin()
     }
 }
 
@@ -318,9 +348,38 @@ mod tests {
     }
 
     #[test]
+    fn boundary_tangent_masks_are_left_eigenvectors() {
+        for n in [2_usize, 3, 4, 5, 12, 40] {
+            // The vertex, the edges from the first to the last, the faces.
+            let (size, edge, face) = (2 * n + 2, |i: usize| 1 + i, |i: usize| 2 + n + i);
+            let mut rows = vec![vec![0.0; size]; size];
+            (rows[0][0], rows[0][edge(0)], rows[0][edge(n)]) = (1.0 - 2.0 * CREASE_END, CREASE_END, CREASE_END);
+            for i in 0..=n {
+                let (end, far) = if i == 0 || i == n { (0.5, 0.0) } else { (EDGE_END, EDGE_FAR) };
+                (rows[edge(i)][0], rows[edge(i)][edge(i)]) = (end, end);
+                if far > 0.0 {
+                    [edge(i - 1), edge(i + 1), face(i - 1), face(i)].into_iter().for_each(|j| rows[edge(i)][j] = far);
+                }
+            }
+            for i in 0..n {
+                [0, edge(i), edge(i + 1), face(i)].into_iter().for_each(|j| rows[face(i)][j] = 0.25);
+            }
+            let mask = BoundaryTangent::new(n as u32);
+            let mut weights = vec![mask.vertex()];
+            weights.extend((0..=n as u32).map(|i| mask.edge(i)));
+            weights.extend((0..n as u32).map(|i| mask.face(i)));
+            let carried = left_multiply(&weights, &rows);
+            let cos = (PI / n as f64).cos();
+            let eigenvalue = (cos + 5.0 + ((cos + 9.0) * (cos + 1.0)).sqrt()) / 16.0;
+            for (a, b) in weights.iter().zip(carried) {
+                assert!((a * eigenvalue - b).abs() < 1e-12, "{n} faces: {a} became {b}");
+            }
+        }
+    }
+
+    #[test]
     fn boundary_tangent_weights_sum_to_zero() {
-        for faces in 1..=20 {
-            let mask = BoundaryTangent::new(faces);
+        for (faces, mask) in (1..=20).flat_map(|n| [(n, BoundaryTangent::new(n)), (n, BoundaryTangent::at_corner(n))]) {
             let sum = mask.vertex()
                 + (0..=faces).map(|i| mask.edge(i)).sum::<f64>()
                 + (0..faces).map(|i| mask.face(i)).sum::<f64>();

@@ -4,23 +4,12 @@ use glam::DVec3;
 use crate::cage::Cage;
 use crate::random::{Random, noise};
 use crate::rotate::{relax, rotate_random_edges};
-use crate::sheets::grid;
 use crate::solids::cube_sphere;
 
 /// Faces with an extraordinary vertex around one rotated edge among regular faces.
 const FACES_PER_ROTATION: f64 = 12.0;
 /// Rounds of relaxation after the rotations.
 const RELAXATION_ROUNDS: u32 = 10;
-
-/// Hills on a square grid of about `face_count` quads, of side 10.
-pub fn terrain(face_count: u32) -> Cage {
-    let n = side_count(face_count);
-    let step = 10.0 / f64::from(n);
-    grid(n, n, |i, j| {
-        let (x, z) = (f64::from(i) * step - 5.0, f64::from(j) * step - 5.0);
-        DVec3::new(x, 0.9 * noise(DVec3::new(x, 0.2 * (x + z), z), 6), z)
-    })
-}
 
 /// A closed, lumpy blob of about `face_count` quads, of which about `irregular_share` have an extraordinary vertex.
 pub fn blob(face_count: u32, irregular_share: f64) -> Cage {

@@ -1,4 +1,4 @@
-//! Makes the meshes of `scenes/` and larger ones of any size. The same arguments give the same bytes.
+//! Makes the files of `scenes/`, larger meshes of any size, and scenes of them. The same arguments give the same bytes.
 //!
 //! | module | idea |
 //! |---|---|
@@ -14,18 +14,30 @@
 //! | `random_cage` | cages that a seed makes, for tests |
 //! | `large` | meshes of any number of faces |
 //! | `scenes` | what stands in `scenes/` |
+//! | `terrain` | hills of any number of faces |
+//! | `flight` | a camera's way through their valleys |
+//! | `crowd` | one mesh in many places |
+//! | `distances` | a camera's way from a model |
+//! | `framing` | from how far a camera sees things |
+//! | `scene_text` | a scene file under construction, and its JSON text |
 //! | `hero` | the scene that shows it all |
 pub mod cage;
 pub mod creased;
+pub mod crowd;
+pub mod distances;
 pub mod edits;
+pub mod flight;
+pub mod framing;
 pub mod hero;
 pub mod large;
 pub mod lattice;
 pub mod random;
 pub mod random_cage;
 pub mod rotate;
+pub mod scene_text;
 pub mod scenes;
 pub mod sectors;
 pub mod sheets;
 pub mod solids;
 pub mod tags;
+pub mod terrain;

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use planish_generate::cage::Cage;
 use planish_generate::random_cage::manifold::is_manifold;
-use planish_generate::scenes::{SceneFile, all};
-use planish_generate::{large, sectors, solids};
+use planish_generate::scenes::{SceneFile, all, placed};
+use planish_generate::{large, sectors, solids, terrain};
 
 fn folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenes")
@@ -118,10 +118,16 @@ fn committed_files_are_what_the_generator_makes() {
         let committed = std::fs::read_to_string(folder().join(file.file_name())).unwrap();
         assert!(committed == file.text(), "{}.obj is stale: planish-generate scenes scenes", file.name);
     }
-    let on_disk = std::fs::read_dir(folder())
-        .unwrap()
-        .filter(|entry| entry.as_ref().unwrap().path().extension().is_some_and(|extension| extension == "obj"));
-    assert_eq!(on_disk.count(), files.len(), "scenes/ has an OBJ file that the generator does not make");
+    for (name, scene) in placed() {
+        let committed = std::fs::read_to_string(folder().join(format!("{name}.json"))).unwrap();
+        assert!(committed == scene.to_json(), "{name}.json is stale: planish-generate scenes scenes");
+    }
+    let on_disk = |wanted: &str| {
+        let entries = std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path());
+        entries.filter(|path| path.extension().is_some_and(|extension| extension == wanted)).count()
+    };
+    let made = [files.len(), placed().len()];
+    assert_eq!([on_disk("obj"), on_disk("json")], made, "scenes/ has a file that the generator does not make");
 }
 
 #[test]
@@ -242,7 +248,7 @@ fn boundary_valences_cover_2_to_21() {
     }
     let largest = around_vertices(&named("boundary_valence_20")).iter().map(|vertex| vertex.edge_count).max();
     assert_eq!(largest, Some(20));
-    assert_eq!(extraordinary(&sectors::fan(7)), []);
+    assert!(extraordinary(&sectors::fan(7)).is_empty());
 }
 
 #[test]
@@ -280,7 +286,7 @@ fn blob_has_the_faces_and_about_the_irregular_share_asked_for() {
 
 #[test]
 fn terrain_is_a_regular_grid_of_the_size_asked_for() {
-    let cage = large::terrain(250_000);
+    let cage = terrain::terrain(250_000, 0.0);
     assert_eq!((cage.faces.len(), extraordinary(&cage).len()), (250_000, 0));
 }
 

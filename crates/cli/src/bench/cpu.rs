@@ -31,15 +31,16 @@ pub fn run(bench: &Bench, cage: &Cage) -> Result<Vec<CpuRow>> {
 
 fn row(bench: &Bench, cage: &Cage, level: u32) -> Result<CpuRow> {
     bench.console.progress(format_args!("{}: tables to level {level}", cage.path().display()));
-    let desc = SurfaceDesc { spacing: bench.arguments.spacing.into(), level, ..SurfaceDesc::default() };
+    let desc = SurfaceDesc { level, ..SurfaceDesc::default() };
     let (mut topology, mut tables, mut total) = (Vec::new(), Vec::new(), Vec::new());
     let (mut patches, mut bytes) = (0, 0);
     for _ in 0..=bench.arguments.repeat {
-        let made = preprocess(cage.mesh(), &desc).with_context(|| cage.path().display().to_string())?;
+        let made = preprocess(&cage.meshes(), &desc).with_context(|| cage.path().display().to_string())?;
         topology.push(made.times.topology);
         tables.push(made.times.tables);
         total.push(made.times.topology + made.times.tables);
-        patches = (made.tables.patches.len() + made.tables.filling.len()) as u64;
+        patches =
+            (made.tables.patches.len() + made.tables.irregular_ranges[made.tables.last_level as usize].len()) as u64;
         bytes = table_bytes(&made.tables);
     }
     // The first is not timed.

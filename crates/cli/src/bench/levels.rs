@@ -40,7 +40,7 @@ pub fn run(bench: &Bench, device: &Device, cage: &Cage) -> Result<Vec<LevelRow>>
         bench.console.progress(format_args!("{}: fas, level {level}", cage.path().display()));
         let fas = measure(bench, device, cage, setting(SurfaceMethod::Fas))?;
         bench.console.progress(format_args!("{}: uniform, level {level}", cage.path().display()));
-        let uniform = match refusal(cage.mesh(), level, device.memory_budget()) {
+        let uniform = match refusal(cage.mesh()?, level, device.memory_budget()) {
             Some(reason) => Err(reason),
             None => match measure(bench, device, cage, setting(SurfaceMethod::Uniform)) {
                 Ok(measured) => Ok(measured),

@@ -1,17 +1,15 @@
 //! What is measured of a frame: medians of frames in each of which the cage has moved.
 
-use std::time::Instant;
-
 use anyhow::Result;
 use planish_gpu::Device;
-use planish_render::{SurfaceDesc, SurfaceMethod, View};
+use planish_render::{Density, SurfaceDesc, SurfaceMethod, View};
 use planish_subdiv::refine::CreasePatches;
 use serde::Serialize;
 
 use super::{Bench, median};
-use crate::cage::{Cage, milliseconds};
-use crate::offline::{Culling, Plan, Session, frame_camera};
-use crate::stats::{FrameStats, GpuStats, PatchStats, drawn_triangle_count};
+use crate::cage::Cage;
+use crate::offline::{Plan, Session, frame_camera, frame_needs, frame_options};
+use crate::stats::{FrameStats, GpuStats, PatchStats};
 
 /// A method's frames at one setting.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -21,7 +19,7 @@ pub struct Measured {
     /// Patches that were drawn.
     pub patches: PatchStats,
     pub triangles: u64,
-    /// Points of all levels.
+    /// Points and limit points that were computed.
     pub points: u64,
     /// Bytes of what depends on connectivity alone.
     pub table_bytes: u64,
@@ -45,27 +43,28 @@ pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) ->
     let arguments = bench.arguments;
     let camera = cage.default_view()?;
     let Setting { method, level, tess_factor, crease_patches } = setting;
-    let plan = Plan {
+    let mut plan = Plan {
         frame_camera: frame_camera(&camera, arguments.size),
+        objects: cage.objects(&camera),
         camera,
-        desc: SurfaceDesc { method, spacing: arguments.spacing.into(), level, crease_patches },
-        tess_factor,
+        desc: SurfaceDesc { method, level, crease_patches },
+        needs: frame_needs(arguments.spacing.into(), tess_factor),
+        options: frame_options(method, Density::Tess(tess_factor), false),
     };
+    plan.cull(arguments.no_cull);
     let mut session = Session::new(device, cage, &plan, bench.console)?;
-    let images = session.images(View::Shaded, false, Culling::new(cage, &plan.camera, arguments.no_cull))?;
+    let images = session.images(View::Shaded, false)?;
     let mut cage_motion = CageMotion::new(cage);
-    session.run(cage_motion.positions(0), &images.frame)?;
+    let camera = session.camera;
+    session.draw(&images, &camera, &cage_motion.positions(0))?;
     let mut frames = Vec::new();
     for frame in 1..=arguments.repeat as i32 {
-        let start = Instant::now();
-        let (report, _) = session.run(cage_motion.positions(frame), &images.frame)?;
-        let wall_ms = milliseconds(start);
-        let counts = session.drawn_counts(&images)?;
-        frames.push(FrameStats::new(frame, &session, &report, wall_ms, &counts, drawn_triangle_count(&report)));
+        let cages = cage_motion.positions(frame);
+        let drawn = session.draw(&images, &camera, &cages)?;
+        frames.push(FrameStats::drawn(frame, &session, &drawn));
     }
     let (surface, times) = (&session.surface, session.surface.times());
     Ok(Measured {
-        points: u64::from(surface.tables().point_count()),
         table_bytes: surface.memory().tables,
         preprocess_ms: times.topology + times.tables,
         ..medians(surface.tables().last_level, &frames)
@@ -88,41 +87,46 @@ fn medians(level: u32, frames: &[FrameStats]) -> Measured {
         level,
         patches: last.patches,
         triangles: last.triangles,
+        points: last.points,
         gpu_ms: GpuStats {
+            density: of(|frame| frame.gpu_ms.density),
+            select: of(|frame| frame.gpu_ms.select),
             subdivide: of(|frame| frame.gpu_ms.subdivide),
             limit: of(|frame| frame.gpu_ms.limit),
             emit: of(|frame| frame.gpu_ms.emit),
             draw: of(|frame| frame.gpu_ms.draw),
             total: of(|frame| frame.gpu_ms.total),
-            ..GpuStats::default()
         },
         wall_ms: of(|frame| frame.wall_ms),
         ..Measured::default()
     }
 }
 
-/// A cage that sways a little, as the peer's does: in frame k a vertex moves by 0.002 d sin(k / 2 + 3 y / d) along x, d
+/// Cages that sway a little, as the peer's does: in frame k a vertex moves by 0.002 d sin(k / 2 + 3 y / d) along x, d
 /// being the diagonal of the bounding box.
 struct CageMotion<'a> {
-    rest: &'a [[f32; 3]],
-    moved: Vec<[f32; 3]>,
+    rest: Vec<&'a [[f32; 3]]>,
+    moved: Vec<Vec<[f32; 3]>>,
     diagonal: f64,
 }
 
 impl<'a> CageMotion<'a> {
     fn new(cage: &'a Cage) -> Self {
-        let rest = cage.mesh().positions.as_slice();
-        Self { rest, moved: rest.to_vec(), diagonal: cage.diagonal() }
+        let rest = cage.positions();
+        let moved = rest.iter().map(|positions| positions.to_vec()).collect();
+        Self { rest, moved, diagonal: cage.diagonal() }
     }
 
-    fn positions(&mut self, frame: i32) -> &[[f32; 3]] {
+    fn positions(&mut self, frame: i32) -> Vec<&[[f32; 3]]> {
         /// Amplitude in diagonals.
         const AMPLITUDE: f64 = 0.002;
-        for (moved, &[x, y, _]) in self.moved.iter_mut().zip(self.rest) {
-            let phase = 0.5 * f64::from(frame) + 3.0 * f64::from(y) / self.diagonal;
-            moved[0] = x + (AMPLITUDE * self.diagonal * phase.sin()) as f32;
+        for (moved, rest) in self.moved.iter_mut().zip(&self.rest) {
+            for (moved, &[x, y, _]) in moved.iter_mut().zip(*rest) {
+                let phase = 0.5 * f64::from(frame) + 3.0 * f64::from(y) / self.diagonal;
+                moved[0] = x + (AMPLITUDE * self.diagonal * phase.sin()) as f32;
+            }
         }
-        &self.moved
+        self.moved.iter().map(Vec::as_slice).collect()
     }
 }
 

@@ -5,15 +5,18 @@
 //! | `levels` | fas with uniform refinement, level by level: FAS section 8.1, Table I |
 //! | `factors` | fas at several tess factors |
 //! | `creases` | crease patches of every kind with refined creases |
+//! | `path` | fas with dfas, along a camera path or from the scene's cameras; `chart` draws it |
 //! | `cpu` | the building of tables alone |
 //! | `measure` | what all of them measure of a frame |
 //! | `peer` | OpenSubdiv's times for the same |
 
+mod chart;
 mod cpu;
 mod creases;
 mod factors;
 mod levels;
 mod measure;
+mod path;
 mod peer;
 
 use anyhow::Result;
@@ -36,7 +39,9 @@ pub fn run(arguments: &BenchArguments, console: &Console) -> Result<()> {
         return bench.scenes(None, |cage| cpu::run(&bench, cage));
     }
     let device = open_device(&arguments.device, console)?;
-    if arguments.creases {
+    if arguments.path.is_some() || arguments.cameras {
+        bench.scenes(Some(&device), |cage| path::run(&bench, &device, cage))?;
+    } else if arguments.creases {
         bench.scenes(Some(&device), |cage| creases::run(&bench, &device, cage))?;
     } else if arguments.tess.is_empty() {
         bench.scenes(Some(&device), |cage| levels::run(&bench, &device, cage))?;
@@ -59,6 +64,17 @@ trait Row: Serialize {
     fn headings(with_peer: bool) -> Vec<&'static str>;
     /// The cells under them.
     fn cells(&self, with_peer: bool) -> Vec<String>;
+    /// Whether the text table has it.
+    fn is_shown(&self) -> bool {
+        true
+    }
+    /// What all rows come to.
+    fn summary(_rows: &[Self]) -> Option<String>
+    where
+        Self: Sized,
+    {
+        None
+    }
     /// What does not fit in a cell.
     fn note(&self) -> Option<String> {
         None
@@ -127,12 +143,15 @@ impl Bench<'_> {
         let mut text = format!("{name}: {vertices} vertices, {faces} faces; {where_it_ran}, medians of {repeat}\n");
         let with_peer = self.peer.is_some();
         let mut table = TextTable::new(&R::headings(with_peer));
-        for row in rows {
+        for row in rows.iter().filter(|row| row.is_shown()) {
             table.push(row.cells(with_peer));
         }
         text.push_str(&table.to_text());
         for note in rows.iter().filter_map(R::note) {
             text.push_str(&format!("{note}\n"));
+        }
+        if let Some(summary) = R::summary(rows) {
+            text.push_str(&format!("{summary}\n"));
         }
         text
     }

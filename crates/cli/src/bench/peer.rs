@@ -78,7 +78,7 @@ impl Peer {
 
     fn run(&self, cage: &Cage, level: u32, arguments: &[&str]) -> Result<String> {
         let level = level.clamp(*LEVELS.start(), *LEVELS.end()).to_string();
-        let boundary = match cage.mesh().options.boundary {
+        let boundary = match cage.mesh()?.options.boundary {
             BoundaryInterpolation::None => "none",
             BoundaryInterpolation::EdgeOnly => "edge",
             BoundaryInterpolation::EdgeAndCorner => "edgecorner",

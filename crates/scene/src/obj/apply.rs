@@ -1,4 +1,4 @@
-//! Tags to the mesh's creases, corners, holes and options. A later tag overrides an earlier one.
+//! Tags to the mesh's creases, corners, holes, densities and options. A later tag overrides an earlier one.
 use std::collections::HashSet;
 
 use planish_subdiv::mesh::{
@@ -36,6 +36,7 @@ pub fn apply(tags: &[Tag], faces: &FaceMap, mesh: &mut ControlMesh, warnings: &m
             }
             TagKind::VertexEdit | TagKind::EdgeEdit => edits::component_edits(tag, faces, mesh, warnings)?,
             TagKind::FaceEdit => edits::face_edits(tag, faces, mesh, warnings)?,
+            TagKind::Density => densities(tag, mesh)?,
         }
     }
     drop_creases_without_edge(mesh, &crease_lines, warnings);
@@ -81,6 +82,25 @@ fn holes(tag: &Tag, faces: &FaceMap, mesh: &mut ControlMesh, warnings: &mut Warn
             Some(face) => mesh.holes.push(face),
             None => warnings.push(Some(tag.line), format!("a hole in face {face}, which was dropped: ignored")),
         }
+    }
+    Ok(())
+}
+
+/// `density`: vertices, with one factor on the tessellation density or one a vertex. Other vertices keep 1.
+fn densities(tag: &Tag, mesh: &mut ControlMesh) -> Result<(), Fault> {
+    if tag.ints.is_empty() {
+        return Err(Fault::at(tag.line, "a density of 0 vertices", "1 or more"));
+    }
+    no_strings(tag)?;
+    one_or_one_each(tag, tag.ints.len(), "density", "vertex")?;
+    let vertices = indices(tag, mesh.positions.len(), "vertex")?;
+    mesh.density.resize(mesh.positions.len(), 1.0);
+    for (vertex, &value) in vertices.into_iter().zip(tag.floats.iter().cycle()) {
+        let density = value as f32;
+        if !(density.is_finite() && density >= 0.0) {
+            return Err(Fault::at(tag.line, format!("density {value}"), "0 or more, finite in 32-bit floating point"));
+        }
+        mesh.density[vertex as usize] = density;
     }
     Ok(())
 }
@@ -152,13 +172,19 @@ pub fn index(line: u32, int: i64, count: usize, what: &str) -> Result<u32, Fault
 
 /// The tag's floats as `count` sharpnesses: one for all, or one each.
 fn sharpnesses(tag: &Tag, count: usize, what: &str) -> Result<impl Fn(usize) -> f32 + use<>, Fault> {
-    if tag.floats.len() != 1 && tag.floats.len() != count {
-        let found = format!("{} sharpness values for {count}", tag.floats.len());
-        return Err(Fault::at(tag.line, found, format!("one, or one for each {what}")));
-    }
+    one_or_one_each(tag, count, "sharpness", what)?;
     let values: Result<Vec<f32>, Fault> = tag.floats.iter().map(|&value| sharpness(tag.line, value)).collect();
     let values = values?;
     Ok(move |index: usize| values[index.min(values.len() - 1)])
+}
+
+/// Refuses a tag that has neither one float for all nor one for each of `count`.
+fn one_or_one_each(tag: &Tag, count: usize, value: &str, each: &str) -> Result<(), Fault> {
+    if tag.floats.len() == 1 || tag.floats.len() == count {
+        return Ok(());
+    }
+    let found = format!("{} {value} values for {count}", tag.floats.len());
+    Err(Fault::at(tag.line, found, format!("one, or one for each {each}")))
 }
 
 /// A sharpness that is not negative.

@@ -1,5 +1,5 @@
 //! The OBJ reader: `v vt vn f o g s usemtl mtllib`, and the `t` lines with which OpenSubdiv's test shapes say creases,
-//! corners, holes, options and hierarchical edits.
+//! corners, holes, options, hierarchical edits and, a tag of ours, densities.
 //!
 //! One file is one mesh: groups, objects and materials do not split it. What the reader does not know it ignores.
 //! Faces and tags may come before the vertices and faces that they name, so indices are checked at the end of the file.
@@ -9,7 +9,7 @@
 //! | `lines` | bytes to logical lines and tokens |
 //! | `faces` | `f` lines, and what is checked of them at the end |
 //! | `tags` | `t` lines to names and values |
-//! | `apply` | tags to creases, corners, holes and options |
+//! | `apply` | tags to creases, corners, holes, densities and options |
 //! | `edits` | tags to hierarchical edits |
 //! | `warnings` | a bounded list of warnings |
 mod apply;
@@ -19,20 +19,22 @@ mod lines;
 mod tags;
 mod warnings;
 
+pub(crate) use lines::quoted;
+pub(crate) use warnings::Warnings;
+
 use planish_subdiv::mesh::{ControlMesh, MAX_ELEMENTS};
 
 use crate::error::Fault;
-use crate::{FaceVaryingChannel, LoadOptions, Mesh, Scene};
+use crate::{FaceVaryingChannel, LoadOptions, Mesh, Warning};
 use faces::Faces;
-use lines::{Line, Lines, Tokens, number, quoted};
+use lines::{Line, Lines, Tokens, number};
 use tags::Tag;
-use warnings::Warnings;
 
 /// The byte order mark with which some editors begin UTF-8 files.
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
-/// Reads an OBJ file's bytes into a scene of one mesh.
-pub(crate) fn read(name: &str, bytes: &[u8], options: &LoadOptions) -> Result<Scene, Fault> {
+/// Reads an OBJ file's bytes into a mesh. `name` is its name if the file gives none.
+pub(crate) fn read(name: &str, bytes: &[u8], options: &LoadOptions) -> Result<(Mesh, Vec<Warning>), Fault> {
     let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
     refuse_zero_bytes(bytes)?;
     let mut reader = Reader::default();
@@ -83,7 +85,7 @@ impl Reader {
         Ok(())
     }
 
-    fn finish(mut self, name: &str, options: &LoadOptions) -> Result<Scene, Fault> {
+    fn finish(mut self, name: &str, options: &LoadOptions) -> Result<(Mesh, Vec<Warning>), Fault> {
         if self.positions.is_empty() {
             return Err(Fault::whole("no vertices", "lines `v x y z` and `f 1 2 3 ..`: an OBJ file"));
         }
@@ -103,7 +105,7 @@ impl Reader {
         };
         apply::apply(&self.tags, &face_map, &mut control_mesh, &mut self.warnings)?;
         let mesh = Mesh { name: self.object_name.unwrap_or_else(|| name.to_owned()), control_mesh, uv };
-        Ok(Scene { name: name.to_owned(), meshes: vec![mesh], cameras: Vec::new(), warnings: self.warnings.into_vec() })
+        Ok((mesh, self.warnings.into_vec()))
     }
 
     /// The texture coordinates when every corner has one; none, with a warning, when only some have.

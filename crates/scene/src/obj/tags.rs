@@ -16,6 +16,7 @@ pub enum TagKind {
     VertexEdit,
     EdgeEdit,
     FaceEdit,
+    Density,
 }
 
 impl TagKind {
@@ -31,6 +32,7 @@ impl TagKind {
             b"vertexedit" => Self::VertexEdit,
             b"edgeedit" => Self::EdgeEdit,
             b"faceedit" => Self::FaceEdit,
+            b"density" => Self::Density,
             _ => return None,
         })
     }

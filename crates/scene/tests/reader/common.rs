@@ -1,6 +1,7 @@
 //! What the reader's tests share: small files and short ways to read them.
-use planish_scene::{Error, LoadOptions, Mesh, Scene, read_obj};
+use planish_scene::{Error, LoadOptions, Mesh, Scene, read_json, read_obj};
 use planish_subdiv::mesh::ControlMesh;
+use tempfile::TempDir;
 
 /// A cube; faces 0 to 5, vertices 0 to 7.
 pub const CUBE: &str = "\
@@ -38,4 +39,36 @@ pub fn assert_refused(text: impl AsRef<[u8]>, message: &str) {
     let error = read(text.as_ref()).expect_err("the file should be refused");
     assert_eq!(error.to_string(), format!("folder/name.obj: {message}"));
     assert!(!error.to_string().contains('\n'));
+}
+
+/// A folder of meshes for scene files to name: `cube.obj`, and `sub/strip.OBJ` of one quad. `folder.obj` is a folder.
+pub fn scene_folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::create_dir(path("sub")).unwrap();
+    std::fs::create_dir(path("folder.obj")).unwrap();
+    std::fs::write(path("cube.obj"), CUBE).unwrap();
+    std::fs::write(path("sub/strip.OBJ"), "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n").unwrap();
+    folder
+}
+
+/// A scene file that has the cube and these instances.
+pub fn scene_of(instances: &str) -> String {
+    format!(r#"{{ "meshes": [{{ "name": "cube", "file": "cube.obj" }}], "instances": [{instances}] }}"#)
+}
+
+/// Reads a scene file that lies in a folder of meshes.
+pub fn scene_in(folder: &TempDir, text: &str) -> Result<Scene, Error> {
+    read_json(folder.path().join("scene.json"), text.as_bytes(), &LoadOptions::default())
+}
+
+pub fn scene(text: &str) -> Result<Scene, Error> {
+    scene_in(&scene_folder(), text)
+}
+
+/// Asserts that a scene file is refused with exactly this message after the file's name.
+pub fn assert_scene_refused(text: &str, message: &str) {
+    let folder = scene_folder();
+    let error = scene_in(&folder, text).expect_err("the file should be refused");
+    assert_eq!(error.to_string(), format!("{}: {message}", folder.path().join("scene.json").display()));
 }

@@ -2,6 +2,9 @@
 mod common;
 mod edits;
 mod errors;
+mod json;
+mod json_cameras;
+mod json_instances;
 mod load;
 mod robust;
 mod syntax;

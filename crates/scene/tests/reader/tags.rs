@@ -51,6 +51,17 @@ fn hole_tags_are_faces() {
 }
 
 #[test]
+fn density_tags_are_vertices_with_one_factor_or_one_each_and_others_have_one() {
+    assert!(tagged("").density.is_empty());
+    let mut expected = [1.0; 8];
+    (expected[3], expected[7]) = (0.5, 0.0);
+    assert_eq!(tagged("t density 2/2/0 3 7 0.5 0").density, expected);
+    (expected[3], expected[7]) = (2.5, 2.5);
+    assert_eq!(tagged("t density 2/1/0 7 3 2.5").density, expected);
+    assert_eq!(tagged("t density 1/1/0 3 9\nt density 2/2/0 3 7 2.5 2.5").density, expected);
+}
+
+#[test]
 fn interpolateboundary_chooses_the_boundary_rule() {
     assert_eq!(tagged("").options.boundary, Boundary::EdgeAndCorner);
     let rules = [Boundary::None, Boundary::EdgeAndCorner, Boundary::EdgeOnly];
@@ -159,6 +170,11 @@ fn tags_with_unfitting_values_are_refused() {
     assert_tag_refused("t corner 1/1/1 0 1 x", "found a tag with 1 strings, expected none");
     assert_tag_refused("t hole 0/0/0", "found a hole of 0 faces and 0 floats, expected 1 or more faces and no floats");
     assert_tag_refused("t hole 1/0/1 0 x", "found a tag with 1 strings, expected none");
+    assert_tag_refused("t density 0/1/0 1", "found a density of 0 vertices, expected 1 or more");
+    let expected = "expected one, or one for each vertex";
+    assert_tag_refused("t density 3/2/0 0 1 2 1 2", &format!("found 2 density values for 3, {expected}"));
+    assert_tag_refused("t density 1/0/0 0", &format!("found 0 density values for 1, {expected}"));
+    assert_tag_refused("t density 1/1/1 0 1 x", "found a tag with 1 strings, expected none");
     assert_tag_refused("t interpolateboundary 2/0/0 1 1", "found a tag with 2/0/0 values, expected 1/0/0");
     assert_tag_refused("t creasemethod 1/0/0 1", "found a tag with 1/0/0 values, expected 0/0/1");
 }
@@ -177,9 +193,20 @@ fn negative_and_nan_sharpness_is_refused() {
 }
 
 #[test]
+fn densities_that_are_negative_or_not_finite_are_refused() {
+    for value in ["-0.5", "inf", "-inf", "1e39"] {
+        let shown: f64 = value.parse().unwrap();
+        let message = format!("found density {shown}, expected 0 or more, finite in 32-bit floating point");
+        assert_tag_refused(&format!("t density 2/2/0 0 1 1 {value}"), &message);
+    }
+    assert_tag_refused("t density 1/1/0 0 NaN", "found `NaN`, expected a number");
+}
+
+#[test]
 fn tag_indices_out_of_range_are_refused() {
     assert_tag_refused("t crease 2/1/0 0 8 2", "found vertex 8 in a tag, expected 0 to 7");
     assert_tag_refused("t corner 1/1/0 -1 2", "found vertex -1 in a tag, expected 0 to 7");
+    assert_tag_refused("t density 1/1/0 8 2", "found vertex 8 in a tag, expected 0 to 7");
     assert_tag_refused("t hole 1/0/0 6", "found face 6 in a tag, expected 0 to 5");
 }
 

@@ -1,4 +1,4 @@
-//! What stands in `scenes/`: small meshes that each show one feature, and the hero.
+//! What stands in `scenes/`: small meshes that each show one feature, the hero, and scenes of several of them.
 mod boundaries;
 mod chaikin;
 mod corners;
@@ -10,12 +10,14 @@ mod holes;
 mod mixed_creases;
 mod nonmanifold;
 mod parts;
+mod several;
 mod shapes;
 mod triangles;
 
 use crate::cage::Cage;
+use crate::scene_text::SceneText;
 
-/// A file of `scenes/`.
+/// A mesh file of `scenes/`.
 pub struct SceneFile {
     /// The file's stem, which names what it shows.
     pub name: String,
@@ -41,7 +43,7 @@ impl SceneFile {
     }
 }
 
-/// All files of `scenes/`.
+/// All mesh files of `scenes/`.
 pub fn all() -> Vec<SceneFile> {
     let features = [
         shapes::files(),
@@ -57,4 +59,9 @@ pub fn all() -> Vec<SceneFile> {
         edits::files(),
     ];
     features.into_iter().flatten().collect()
+}
+
+/// All scene files of `scenes/`: their stems and what stands in them.
+pub fn placed() -> Vec<(&'static str, SceneText)> {
+    vec![("several", several::scene())]
 }

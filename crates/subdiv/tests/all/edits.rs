@@ -5,6 +5,7 @@ use planish_subdiv::Error;
 use planish_subdiv::eval::Evaluator;
 use planish_subdiv::mesh::{EditOperation, HierarchicalEdit};
 use planish_subdiv::refine::{RefineOptions, Refinement};
+use planish_subdiv::selection::deepest_cut;
 use planish_subdiv::tables::Tables;
 
 /// A flat sheet of n x n unit squares.
@@ -118,15 +119,17 @@ fn refinement_reaches_no_further_than_the_edit() {
     let tables = Tables::new(&Refinement::new(&mesh, options).expect("a legal cage"));
     assert_eq!(tables.last_level, 3);
     // At each level the nine faces around the path are split, and only they.
-    let counts: Vec<u32> = tables.counts.iter().map(|count| count.regular + count.transition).collect();
+    let deepest = deepest_cut(&tables, &tables.ranges()).counts;
+    let counts: Vec<u32> = deepest.iter().map(|count| count.regular + count.transition).collect();
     assert_eq!(counts, [1600 - 9, 36 - 9, 36 - 9, 36]);
-    assert_eq!(tables.counts[3].filling, 0);
+    assert_eq!(deepest[3].filling, 0);
     assert_eq!(tables.edits.len(), 1);
 
     // The last split of a hole needs no more than the face on its path.
     mesh.edits = vec![edit(&[820, 0, 2], EditOperation::Hole)];
     let tables = Tables::new(&Refinement::new(&mesh, options).expect("a legal cage"));
-    let counts: Vec<u32> = tables.counts.iter().map(|count| count.regular + count.transition).collect();
+    let deepest = deepest_cut(&tables, &tables.ranges()).counts;
+    let counts: Vec<u32> = deepest.iter().map(|count| count.regular + count.transition).collect();
     assert_eq!(counts, [1600 - 9, 36 - 1, 4 - 1]);
 }
 
@@ -154,7 +157,8 @@ fn an_edit_that_changes_nothing_leaves_a_flipped_seam_as_it_was() {
     mesh.face_vertices[..4].reverse();
     let leaves = |mesh: &ControlMesh| {
         let options = RefineOptions { max_level: 3, ..RefineOptions::default() };
-        Tables::new(&Refinement::new(mesh, options).expect("a legal cage")).counts[3].filling
+        let tables = Tables::new(&Refinement::new(mesh, options).expect("a legal cage"));
+        deepest_cut(&tables, &tables.ranges()).counts[3].filling
     };
     let before = leaves(&mesh);
     // Some of these are the middles of edges whose two faces run the same way: creases, though not by their faces' number.

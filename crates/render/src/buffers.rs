@@ -1,0 +1,273 @@
+//! The buffers of a surface: tables that depend on connectivity, what every frame fills, and lists that may grow.
+
+use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, DrawArguments, Encoder};
+use planish_shaders as shaders;
+use planish_shaders::{DrawEntry, DrawHead, FrameCounts, FrameData, FrameInput, ListHead, ListItem, Object, SceneData};
+use planish_subdiv::patch::{FillingQuad, PatchInfo, RegularPatch};
+use planish_subdiv::tables::{IndexLists, IrregularFace, Tables};
+
+use crate::edit_points::targets;
+use crate::error::Error;
+use crate::lists::{Capacities, LIST_COUNT, LIST_PHASES, Phases};
+use crate::marks::Marks;
+use crate::objects::ObjectSizes;
+use crate::options::SurfaceMethod;
+use crate::upload::{array, mapped, table};
+
+/// What depends on connectivity alone.
+pub(crate) struct TableBuffers {
+    pub rows: Buffer,
+    pub indices: Buffer,
+    pub weights: Buffer,
+    pub edit_targets: Buffer,
+    pub limit_rows: Buffer,
+    pub limit_indices: Buffer,
+    pub limit_weights: Buffer,
+    pub patches: Buffer,
+    pub irregular: Buffer,
+    pub quads: Buffer,
+    pub ptex_faces: Buffer,
+    pub neighbours: [Buffer; 2],
+    pub rings: [Buffer; 2],
+    pub stars: [Buffer; 2],
+    pub density_scales: Buffer,
+    pub mark_groups: Buffer,
+}
+
+impl TableBuffers {
+    pub fn new(device: &Device, tables: &Tables, marks: &Marks, density_scales: &[f32]) -> Result<Self, Error> {
+        let (stencils, limits) = (&tables.stencils, &tables.limits);
+        let star_marks = IndexLists { first: tables.stars.first.clone(), indices: marks.of_stars(tables) };
+        Ok(Self {
+            rows: table(device, "stencil rows", &rows(&stencils.rows))?,
+            indices: table(device, "stencil indices", &stencils.indices)?,
+            weights: table(device, "stencil weights", &stencils.weights)?,
+            edit_targets: table(device, "edit targets", &targets(&tables.edits))?,
+            limit_rows: table(device, "limit rows", &rows(&limits.rows))?,
+            limit_indices: table(device, "limit indices", &limits.indices)?,
+            limit_weights: table(device, "limit weights", &limits.weights)?,
+            patches: table(device, "patches", &tables.patches.iter().map(patch).collect::<Vec<_>>())?,
+            irregular: table(device, "irregular faces", &tables.irregular.iter().map(irregular).collect::<Vec<_>>())?,
+            quads: table(device, "filling quads", &tables.filling.iter().map(quad).collect::<Vec<_>>())?,
+            ptex_faces: table(device, "Ptex faces", &tables.ptex_faces)?,
+            neighbours: lists(device, "neighbours", &tables.slots.neighbours)?,
+            rings: lists(device, "rings", &tables.slots.rings)?,
+            stars: lists(device, "stars", &star_marks)?,
+            density_scales: table(device, "density scales", density_scales)?,
+            mark_groups: table(device, "mark groups", &marks.groups)?,
+        })
+    }
+
+    pub fn all(&self) -> Vec<&Buffer> {
+        let mut all = vec![
+            &self.rows,
+            &self.indices,
+            &self.weights,
+            &self.edit_targets,
+            &self.limit_rows,
+            &self.limit_indices,
+            &self.limit_weights,
+            &self.patches,
+            &self.irregular,
+            &self.quads,
+            &self.ptex_faces,
+            &self.density_scales,
+            &self.mark_groups,
+        ];
+        all.extend(self.neighbours.iter().chain(&self.rings).chain(&self.stars));
+        all
+    }
+}
+
+/// What every frame fills, of a size that never changes.
+pub(crate) struct FrameBuffers {
+    pub scene: Buffer,
+    pub input: Buffer,
+    pub data: Buffer,
+    pub objects: Buffer,
+    pub cage: Buffer,
+    pub edit_offsets: Buffer,
+    pub points: Buffer,
+    pub limits: Buffer,
+    pub densities: Buffer,
+    pub split_edges: Buffer,
+    pub star_marks: Buffer,
+    pub marks: Buffer,
+    pub in_use: Buffer,
+    pub counts: Buffer,
+    pub counts_read: Buffer,
+}
+
+impl FrameBuffers {
+    pub fn new(
+        device: &Device,
+        tables: &Tables,
+        objects: &[Object],
+        sizes: &ObjectSizes,
+        marks: &Marks,
+    ) -> Result<Self, Error> {
+        let object_buffer = mapped::<Object>(device, "objects", objects.len() as u32)?;
+        object_buffer.write(0, objects)?;
+        let all_rows: Vec<u32> = Phases::new(tables).rows.iter().flat_map(|&[first, n]| first..first + n).collect();
+        Ok(Self {
+            scene: mapped::<SceneData>(device, "scene", 1)?,
+            input: mapped::<FrameInput>(device, "frame input", 1)?,
+            data: mapped::<FrameData>(device, "frame", 1)?,
+            objects: object_buffer,
+            cage: mapped::<shaders::Points>(device, "cage", tables.cage_point_count)?,
+            edit_offsets: mapped::<shaders::Points>(device, "edit offsets", tables.edits.len() as u32)?,
+            points: array::<shaders::Points>(device, "points", tables.point_count())?,
+            limits: array::<shaders::LimitPoint>(device, "limit points", tables.limit_point_count())?,
+            densities: array::<shaders::SlotDensity>(device, "densities", sizes.slots)?,
+            split_edges: array::<u32>(device, "split edges", sizes.edges.div_ceil(32))?,
+            star_marks: array::<u32>(device, "star marks", tables.stars.count().div_ceil(32))?,
+            marks: array::<u32>(device, "marks", marks.word_count)?,
+            // All of them, for the method that selects nothing.
+            in_use: table(device, "rows in use", &all_rows)?,
+            counts: array::<FrameCounts>(device, "counts", 1)?,
+            counts_read: read_back::<FrameCounts>(device, "counts", 1)?,
+        })
+    }
+
+    pub fn all(&self) -> [&Buffer; 15] {
+        [
+            &self.scene,
+            &self.input,
+            &self.data,
+            &self.objects,
+            &self.cage,
+            &self.edit_offsets,
+            &self.points,
+            &self.limits,
+            &self.densities,
+            &self.split_edges,
+            &self.star_marks,
+            &self.marks,
+            &self.in_use,
+            &self.counts,
+            &self.counts_read,
+        ]
+    }
+}
+
+/// Lists that may grow.
+pub(crate) struct ListBuffers {
+    pub chunks: Buffer,
+    pub active: Buffer,
+    /// Patches of finer levels, leaves, patches that are cut.
+    pub items: [Buffer; 3],
+    pub entries: Buffer,
+    pub draws: Buffer,
+    pub heads: Buffer,
+    pub empty_heads: Buffer,
+    pub heads_read: Buffer,
+    pub draw_heads: Buffer,
+    pub empty_draw_heads: Buffer,
+    pub draw_heads_read: Buffer,
+}
+
+impl ListBuffers {
+    pub fn new(
+        device: &Device,
+        capacities: &Capacities,
+        phases: &Phases,
+        method: SurfaceMethod,
+    ) -> Result<Self, Error> {
+        let row_counts: Vec<u32> = phases.rows.iter().map(|&[_, count]| count).collect();
+        let mut heads = capacities.heads(&row_counts);
+        if method == SurfaceMethod::Uniform {
+            // Every row is in use.
+            for (head, &count) in heads[LIST_PHASES..].iter_mut().zip(&row_counts) {
+                let groups = planish_gpu::groups_for(count, crate::lists::CHUNK);
+                *head = ListHead { groups_x: groups.x, groups_y: groups.y, count, ..*head };
+            }
+        }
+        let sum = |counts: &[u32]| counts.iter().sum::<u32>();
+        let [patches, leaves, cut] = capacities.items;
+        Ok(Self {
+            chunks: array::<ListItem>(device, "chunks", sum(&capacities.chunks))?,
+            active: array::<ListItem>(device, "active faces", sum(&capacities.active))?,
+            items: [
+                array::<ListItem>(device, "patch items", patches)?,
+                array::<ListItem>(device, "leaf items", leaves)?,
+                array::<ListItem>(device, "cut items", cut)?,
+            ],
+            entries: array::<DrawEntry>(device, "draw lists", sum(&capacities.entries))?,
+            draws: array::<DrawArguments>(device, "draws", sum(&capacities.draws))?,
+            heads: array::<ListHead>(device, "list heads", LIST_COUNT as u32)?,
+            empty_heads: table(device, "empty list heads", &heads)?,
+            heads_read: read_back::<ListHead>(device, "list heads", LIST_COUNT)?,
+            draw_heads: array::<DrawHead>(device, "draw heads", 4)?,
+            empty_draw_heads: table(device, "empty draw heads", &capacities.draw_heads())?,
+            draw_heads_read: read_back::<DrawHead>(device, "draw heads", 4)?,
+        })
+    }
+
+    pub fn all(&self) -> Vec<&Buffer> {
+        let mut all = vec![
+            &self.chunks,
+            &self.active,
+            &self.entries,
+            &self.draws,
+            &self.heads,
+            &self.empty_heads,
+            &self.heads_read,
+            &self.draw_heads,
+            &self.empty_draw_heads,
+            &self.draw_heads_read,
+        ];
+        all.extend(&self.items);
+        all
+    }
+}
+
+/// Keeps all of a surface's buffers alive as long as a recording.
+pub(crate) fn keep(encoder: &mut Encoder, surface: &crate::surface::Surface) {
+    let all = surface.buffers.all().into_iter().chain(surface.frame.all()).chain(surface.lists.all());
+    all.for_each(|buffer| encoder.keep(buffer));
+}
+
+fn read_back<T>(device: &Device, name: &str, count: usize) -> Result<Buffer, Error> {
+    let size = (count * size_of::<T>()) as u64;
+    Ok(Buffer::new(device, &BufferDesc { name, kind: BufferKind::Readback, size })?)
+}
+
+fn lists(device: &Device, name: &str, lists: &IndexLists) -> Result<[Buffer; 2], Error> {
+    Ok([table(device, name, &lists.first)?, table(device, name, &lists.indices)?])
+}
+
+fn rows(rows: &[planish_subdiv::stencil::StencilRow]) -> Vec<shaders::StencilRow> {
+    rows.iter()
+        .map(|row| shaders::StencilRow {
+            first_index: row.first_index,
+            first_weight: row.first_weight,
+            count: row.count,
+        })
+        .collect()
+}
+
+fn info(info: &PatchInfo) -> shaders::PatchInfo {
+    let [ptex_face, corner, flags] = info.pack();
+    shaders::PatchInfo { ptex_face, corner, flags }
+}
+
+fn patch(p: &RegularPatch) -> shaders::RegularPatch {
+    shaders::RegularPatch { points: p.points, info: info(&p.info), sharpness: p.sharpness, edges: p.edges }
+}
+
+fn irregular(face: &IrregularFace) -> shaders::IrregularFace {
+    shaders::IrregularFace {
+        info: info(&face.info),
+        children: face.children,
+        edges: face.edges,
+        stars: face.stars,
+        limits: face.limits,
+        midpoints: face.midpoints,
+        // FACE_FORCED, FACE_HIDDEN and FACE_STAR_LIMITS_SHIFT.
+        flags: u32::from(face.is_forced) | u32::from(face.is_hidden) << 1 | u32::from(face.star_limits) << 2,
+    }
+}
+
+fn quad(q: &FillingQuad) -> shaders::FillingQuad {
+    shaders::FillingQuad { corners: q.corners, info: info(&q.info) }
+}

@@ -1,0 +1,8 @@
+//! Cages through refinement, tables and selection, against the theory and the f64 evaluator.
+
+mod cages;
+mod edits;
+mod merge;
+mod selection;
+mod surface;
+mod tables;

@@ -1,0 +1,55 @@
+#version 460
+// One group decides of one object whether any of it may be seen, and lists its vertices and faces in chunks.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/append.glsl"
+layout(local_size_x = 64) in;
+
+layout(push_constant, scalar) uniform Push {
+    SceneTables scene;
+} push;
+
+shared uint first_chunk[4];
+shared uint chunk_counts[4];
+
+// Whether the box around an object lies outside of one plane of the view.
+bool is_outside(Object object, EmitView view)
+{
+    uint planes = 31u;
+    for (uint corner = 0; corner < 8; ++corner) {
+        bvec3 is_high = bvec3((corner & 1u) != 0u, (corner & 2u) != 0u, (corner & 4u) != 0u);
+        planes &= point_outside_planes(to_world(object, mix(object.low, object.high, is_high)), view, object.displacement);
+    }
+    return planes != 0u;
+}
+
+void main()
+{
+    uint index = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    FrameInput frame = push.scene.v.frame_input.v;
+    if (index >= frame.object_count) {
+        return;
+    }
+    Object object = push.scene.v.objects.v[index];
+    uint counts[4] = uint[4](object.vertex_count, object.slot_count - object.vertex_count, object.root_count, object.patch_count);
+    if (gl_LocalInvocationID.x < 4u) {
+        uint kind = gl_LocalInvocationID.x;
+        bool is_culled = frame.view.cull != 0u && (object.flags & OBJECT_IN_HULL) != 0u && is_outside(object, frame.view);
+        uint count = is_culled ? 0u : (counts[kind] + CHUNK - 1u) / CHUNK;
+        ListHeads heads = push.scene.v.heads;
+        uint list = kind;
+        uint first = count == 0u ? 0u : atomicAdd(heads.v[list].count, count);
+        // A chunk is a group.
+        if (count != 0u) {
+            atomicMax(heads.v[list].groups_x, min(first + count, 65535u));
+            atomicMax(heads.v[list].groups_y, (first + count + 65534u) / 65535u);
+        }
+        first_chunk[kind] = push.scene.v.chunk_first[kind] + first;
+        chunk_counts[kind] = count;
+    }
+    barrier();
+    for (uint kind = 0; kind < 4; ++kind) {
+        for (uint i = gl_LocalInvocationID.x; i < chunk_counts[kind]; i += gl_WorkGroupSize.x) {
+            push.scene.v.chunks.v[first_chunk[kind] + i] = ListItem(index, i * CHUNK);
+        }
+    }
+}

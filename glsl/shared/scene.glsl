@@ -1,0 +1,218 @@
+// What the kernels of a frame share: objects, marks and lists, reached through one address.
+#ifndef PLANISH_SCENE
+#define PLANISH_SCENE
+#include "tables.glsl"
+#include "visibility.glsl"
+
+// The limit surface of a face lies in the convex hull of its one-ring.
+const uint OBJECT_IN_HULL = 1;
+// Triangles that show their back are never seen.
+const uint OBJECT_HIDES_BACKS = 2;
+// The transform mirrors.
+const uint OBJECT_MIRRORED = 4;
+
+// A mesh at a place. "First" names a place in a table of all meshes or objects.
+struct Object {
+    mat4x3 to_world;
+    vec3 low;             // box around the cage, in the mesh's own space
+    vec3 high;
+    float largest_edge;   // length of the longest edge of the cage, in world space
+    float displacement;   // how far the surface may be moved, in world space
+    uint flags;
+    uint first_slot;      // of its densities
+    uint first_mesh_slot; // of the mesh's slots in the tables of neighbours and rings
+    uint vertex_count;    // slots below this are vertices of the cage
+    uint slot_count;
+    uint first_point;     // the cage's first point
+    uint first_ptex;      // of the mesh's Ptex faces in their table
+    uint first_face;      // number of its first Ptex face among those of all objects
+    uint first_patch;     // regular patches of level 0
+    uint patch_count;
+    uint first_root;      // irregular faces of level 0
+    uint root_count;
+    uint first_edge;      // edge e of the tables is bit first_edge + e of the split edges
+};
+
+// Density at a vertex, and the largest around it; planes of the view that the vertex, and all vertices around it, lie outside of.
+struct SlotDensity {
+    float density;
+    float ring;
+    uint outside;
+    uint ring_outside;
+};
+
+// A list that kernels append to: how many groups of 64 it takes to go over it, and how many entries were appended. More
+// than fit are counted, not written.
+struct ListHead {
+    uint groups_x;
+    uint groups_y;
+    uint groups_z;
+    uint count;
+    uint capacity;
+};
+
+// The lists, by their heads. Active faces have a head a level, from level 1 on; points in use one a phase of subdivision.
+const uint LIST_VERTICES = 0;  // chunks of vertices
+const uint LIST_MIDDLES = 1;   // chunks of slots that are faces of other than four sides
+const uint LIST_ROOTS = 2;     // chunks of irregular faces of level 0
+const uint LIST_BASE = 3;      // chunks of regular patches of level 0
+const uint LIST_PATCHES = 4;   // regular patches of finer levels
+const uint LIST_LEAVES = 5;    // irregular faces that are not refined
+const uint LIST_CUT = 6;       // patches that are cut
+const uint LIST_ACTIVE = 7;    // + level
+const uint LIST_PHASES = LIST_ACTIVE + LEVEL_COUNT; // + phase
+const uint MAX_PHASES = 2 * LEVEL_COUNT + 1;
+const uint LIST_COUNT = LIST_PHASES + MAX_PHASES;
+// Entries of a chunk, and threads of a group.
+const uint CHUNK = 64;
+
+// An object's number and a place in a table: of one element, or of a chunk of them. Faces that cannot be seen are selected for
+// the sake of their neighbours; their object has this bit.
+const uint ITEM_UNSEEN = 0x80000000u;
+struct ListItem {
+    uint object;
+    uint place;
+};
+
+// 64 words of marks, of elements `first` up to `end` of one phase; those that are marked are listed from `first_item` of the phase
+// on. A phase is the rows that subdivision makes at once, or all limit points.
+struct MarkGroup {
+    uint phase;
+    uint first;
+    uint end;
+    uint first_item;
+};
+
+// A patch to draw. Flags: edges that are split, 4 bits; of a piece of a cut patch its place and how many there are a side.
+// The factors are those of the whole patch (factors.glsl): many threads find them here, before a draw's few do.
+struct DrawEntry {
+    uint place;
+    uint object;
+    uint flags;
+    uint triangles; // that the tessellator makes of it
+    vec4 low;
+    vec4 high;
+    vec2 inner;
+};
+
+// VkDrawIndirectCommand: a vertex is a patch.
+struct DrawArguments {
+    uint vertex_count;
+    uint instance_count;
+    uint first_vertex;
+    uint first_instance;
+};
+
+// A list of patches to draw: one draw of all, or several of a few each.
+struct DrawHead {
+    DrawArguments all;
+    uint count;          // entries
+    uint capacity;
+    uint first;          // place of the first entry
+    uint draw_count;
+    uint draw_capacity;
+    uint first_draw;
+};
+const uint DRAW_REGULAR = 0;
+const uint DRAW_TRANSITION = 1;
+const uint DRAW_FILLING = 2;
+const uint DRAW_CUT = 3;
+const uint DRAW_COUNT = 4;
+
+// What a frame drew and computed: patches by level, of each kind.
+struct FrameCounts {
+    uint regular[LEVEL_COUNT];
+    uint transition[LEVEL_COUNT];
+    uint filling[LEVEL_COUNT];
+    uint truncated;
+    uint density_bits; // the largest density, as its bits
+};
+
+const uint SELECT_DYNAMIC = 0;
+const uint SELECT_STATIC = 1;
+
+// What a frame asks for.
+struct FrameInput {
+    EmitView view;
+    float edge_scale;  // pixels of a sphere's diameter times its distance over its radius, over those that an edge should have
+    float density;     // the density itself, where it is the same everywhere; else 0
+    float least_cosine; // between the view's axis and a corner of the image: nothing that is seen is beside it by more
+    uint selection;
+    uint max_level;
+    uint object_lod;   // 1: one density an object
+    uint object_count;
+};
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Objects { Object v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SlotDensities { SlotDensity v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Bits { uint v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ListItems { ListItem v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ListHeads { ListHead v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer MarkGroups { MarkGroup v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer DrawEntries { DrawEntry v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer DrawHeads { DrawHead v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Draws { DrawArguments v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Counts { FrameCounts v; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Inputs { FrameInput v; };
+
+struct SceneData {
+    Inputs frame_input;
+    Objects objects;
+    Points points;
+    LimitPoints limits;
+    RegularPatches patches;
+    IrregularFaces irregular;
+    PtexFaces ptex_faces;
+    Indices neighbour_first; // slot to its first in `neighbours`
+    Indices neighbours;
+    Indices ring_first;      // slot to its first in `rings`
+    Indices rings;
+    Weights density_scales;  // of cage points
+    Indices star_first;
+    Indices star_marks_of;   // places among the marks of the points around
+    SlotDensities densities;
+    Bits split_edges;
+    Bits star_marks;
+    Bits marks;              // of points and limit points in use, phase by phase
+    MarkGroups mark_groups;
+    Bits in_use;             // their numbers, phase by phase
+    ListItems chunks;        // of all four kinds
+    ListItems active_faces;      // level by level
+    ListItems patch_items;
+    ListItems leaf_items;
+    ListItems cut_items;
+    ListHeads heads;
+    DrawHeads draw_heads;
+    DrawEntries entries;
+    Draws draws;
+    Counts counts;
+    uint chunk_first[4];     // where each kind's chunks begin
+    uint first_active[LEVEL_COUNT];
+    uint mark_group_count;
+    uint first_limit_mark;
+};
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer SceneTables { SceneData v; };
+
+// Number of entries of a list.
+uint list_length(ListHeads heads, uint list)
+{
+    return min(heads.v[list].count, heads.v[list].capacity);
+}
+
+vec3 to_world(Object object, vec3 p)
+{
+    // Columns times coordinates, in this order everywhere.
+    precise vec3 result = ((object.to_world[0] * p.x + object.to_world[1] * p.y) + object.to_world[2] * p.z) + object.to_world[3];
+    return result;
+}
+
+// A unit normal under the transform: across the transformed plane. Mirrored ones are turned over, as crossed tangents are.
+vec3 normal_to_world(Object object, vec3 n)
+{
+    precise vec3 x = precise_cross(object.to_world[1], object.to_world[2]);
+    precise vec3 y = precise_cross(object.to_world[2], object.to_world[0]);
+    precise vec3 z = precise_cross(object.to_world[0], object.to_world[1]);
+    precise vec3 turned = (x * n.x + y * n.y) + z * n.z;
+    return unit_vector(turned);
+}
+#endif
