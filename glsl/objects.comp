@@ -34,7 +34,9 @@ void main()
     if (gl_LocalInvocationID.x < 4u) {
         uint kind = gl_LocalInvocationID.x;
         bool is_culled = frame.view.cull != 0u && (object.flags & OBJECT_IN_HULL) != 0u && is_outside(object, frame.view);
-        uint count = is_culled ? 0u : (counts[kind] + CHUNK - 1u) / CHUNK;
+        // The static selection asks for the largest density of all, seen or not.
+        bool is_needed = !is_culled || (kind <= LIST_MIDDLES && frame.selection == SELECT_STATIC);
+        uint count = is_needed ? (counts[kind] + CHUNK - 1u) / CHUNK : 0u;
         ListHeads heads = push.scene.v.heads;
         uint list = kind;
         uint first = count == 0u ? 0u : atomicAdd(heads.v[list].count, count);

@@ -212,6 +212,30 @@ void bezier_part(inout vec3 b[16], vec2 low, vec2 high)
     }
 }
 
+// Whether all triangles of a patch show their back: by its Bezier points, scaled; `middle` is a point of it from the eye, and
+// all lie within the root of `square_radius` of it.
+bool is_patch_turned(vec3 b[16], EmitView view, Grain grain, Scale scale, vec3 middle, float square_radius)
+{
+    vec3 along_u[12];
+    vec3 along_v[12];
+    TangentBounds u = tangents_of(b, 1, 4, along_u);
+    TangentBounds v = tangents_of(b, 4, 1, along_v);
+    [[unroll]] for (int i = 0; i < 12; ++i) {
+        along_v[i] = precise_cross(along_v[i], middle);
+    }
+    float product = 3.402823e38;
+    [[unroll]] for (int i = 0; i < 12; ++i) {
+        [[unroll]] for (int j = 0; j < 12; ++j) {
+            product = min(product, precise_dot(along_u[i], along_v[j]));
+        }
+    }
+    precise float radius = sqrt(square_radius);
+    precise float farthest = sqrt(precise_dot(middle, middle)) + radius;
+    precise float error = scale.rounding + farthest * view.snap;
+    precise float least = (radius + farthest * slack_of(u, v, grain, error)) + 2.0 * scale.eye_rounding;
+    return product > least;
+}
+
 // Whether nothing of a bicubic patch can be seen, by its Bezier points times 36. `displacement` is how far its points may be
 // moved; such patches are seen from behind.
 bool is_patch_unseen(vec3 b[16], EmitView view, Grain grain, bool cull_back, float displacement)
@@ -238,24 +262,12 @@ bool is_patch_unseen(vec3 b[16], EmitView view, Grain grain, bool cull_back, flo
         planes &= outside_planes(d, view, scale, margin);
         square_radius = max(square_radius, precise_dot(around, around));
     }
-    vec3 along_u[12];
-    vec3 along_v[12];
-    TangentBounds u = tangents_of(b, 1, 4, along_u);
-    TangentBounds v = tangents_of(b, 4, 1, along_v);
-    [[unroll]] for (int i = 0; i < 12; ++i) {
-        along_v[i] = precise_cross(along_v[i], middle);
+    bool is_unseen = planes != 0u;
+    // A loop, not a branch: a software driver runs the body of a branch that no thread takes, but not that of a loop.
+    for (bool is_open = cull_back && displacement == 0.0 && !is_unseen; is_open; is_open = false) {
+        is_unseen = is_patch_turned(b, view, grain, scale, middle, square_radius);
     }
-    float product = 3.402823e38;
-    [[unroll]] for (int i = 0; i < 12; ++i) {
-        [[unroll]] for (int j = 0; j < 12; ++j) {
-            product = min(product, precise_dot(along_u[i], along_v[j]));
-        }
-    }
-    precise float radius = sqrt(square_radius);
-    precise float farthest = sqrt(precise_dot(middle, middle)) + radius;
-    precise float error = scale.rounding + farthest * view.snap;
-    precise float least = (radius + farthest * slack_of(u, v, grain, error)) + 2.0 * scale.eye_rounding;
-    return planes != 0u || (cull_back && displacement == 0.0 && product > least);
+    return is_unseen;
 }
 
 // Whether a triangle shows its back, by offsets of its corners from the eye.

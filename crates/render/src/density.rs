@@ -33,7 +33,7 @@ pub fn frame_input(
     sub_pixel_bits: u32,
 ) -> Result<FrameInput, Error> {
     let (edge_scale, density) = match options.density {
-        Density::Tess(factor) if factor >= 1.0 && factor.is_finite() => (0.0, factor.min(MAX_DENSITY)),
+        Density::Tess(factor) if (1.0..=MAX_DENSITY).contains(&factor) => (0.0, factor),
         Density::Tess(factor) => return Err(Error::TessFactor { factor }),
         Density::EdgePixels(pixels) if pixels > 0.0 && pixels.is_finite() => {
             (camera.projection.y_axis.y.abs() * camera.size[1] as f32 / pixels, 0.0)

@@ -13,7 +13,7 @@ pub enum Error {
     #[error(transparent)]
     Gpu(#[from] planish_gpu::Error),
     /// A tess factor that is no number of segments.
-    #[error("tess factor {factor} is out of range: expected a number of at least 1")]
+    #[error("tess factor {factor} is out of range: expected a number from 1 to 16000")]
     TessFactor {
         /// The factor.
         factor: f32,

@@ -204,7 +204,6 @@ impl Surface {
         let data = FrameData {
             scene: address(&self.frame.scene),
             world_to_camera: camera.world_to_camera.to_cols_array_2d(),
-            ..FrameData::default()
         };
         Ok(self.frame.data.write(0, &[data])?)
     }
@@ -260,7 +259,6 @@ impl Surface {
             first_active: self.capacities.first_active(),
             mark_group_count: self.marks.groups.len() as u32,
             first_limit_mark: self.marks.first_limit,
-            ..SceneData::default()
         };
         Ok(frame.scene.write(0, &[data])?)
     }
