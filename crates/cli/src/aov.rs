@@ -22,7 +22,7 @@ pub enum Aov {
     Uv,
     /// Ptex face.
     Face,
-    /// Patch: its place in the table of patches, with the patch-filling quads after them.
+    /// Patch: its place in the table of patches, with the irregular faces after them.
     Patch,
     /// Level of the patch.
     Level,

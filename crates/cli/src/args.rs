@@ -186,7 +186,7 @@ pub struct BenchArguments {
 /// Which file, and how it is read.
 #[derive(Debug, Args)]
 pub struct SceneArguments {
-    /// Scene file, .obj
+    /// Scene file, .obj or .json
     #[arg(value_name = "SCENE")]
     pub path: PathBuf,
     /// Drop degenerate faces (a vertex twice, fewer than three) with a warning, instead of refusing the file
@@ -203,7 +203,7 @@ pub struct SurfaceArguments {
     /// Subdivision scheme, instead of the file's
     #[arg(long, value_enum)]
     scheme: Option<SchemeName>,
-    /// The same tess factor, at least 1, on every base edge
+    /// The same tess factor, from 1 to 16000, on every base edge
     #[arg(long, value_name = "T", value_parser = values::tess_factor, conflicts_with = "edge_pixels", allow_negative_numbers = true)]
     pub tess: Option<f32>,
     /// Triangle edges of about so many pixels [default: 4]
@@ -310,7 +310,7 @@ pub struct FrameArguments {
 }
 
 impl FrameArguments {
-    /// The frames asked for; of a scene that does not move, the current one is 0.
+    /// The frames asked for; without a range the current one, 0.
     pub fn range(&self) -> FrameRange {
         self.frames.unwrap_or(FrameRange::single(0))
     }

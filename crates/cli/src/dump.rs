@@ -12,7 +12,7 @@ use crate::args::DumpArguments;
 use crate::cage::{Cage, milliseconds};
 use crate::console::Console;
 use crate::frames::frame_path;
-use crate::offline::{Drawn, Plan, Session, check_validation, open_device};
+use crate::offline::{Drawn, Plan, Session, check_validation, frame_camera, open_device};
 use crate::render::check_placeholder;
 use crate::stats::{FrameStats, Stats, StatsOutput};
 
@@ -30,7 +30,7 @@ pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
     check_dump_output(&frame_path(&arguments.output, range.frames().next().unwrap_or_default()))?;
     let stats_output = StatsOutput(arguments.frames.stats.as_ref());
     stats_output.check([arguments.output.as_path()].into_iter())?;
-    let plan = Plan::unseen(&cage, &arguments.surface, &arguments.view)?;
+    let plan = Plan::unseen(&cage, &arguments.surface, &arguments.view, range)?;
     let device = open_device(&arguments.device, console)?;
     let mut session = Session::new(&device, &cage, &plan, console)?;
     let start = Instant::now();
@@ -44,6 +44,9 @@ pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
     }
     for (done, frame) in (0_u64..).zip(range.frames()) {
         console.progress(format_args!("frame {frame} ({done} of {} done)", range.count()));
+        if cage.follows_path(&arguments.view) {
+            dump.session.camera = frame_camera(&cage.camera(&arguments.view, frame)?, arguments.view.size);
+        }
         let path = frame_path(&arguments.output, frame);
         let mut timed = Vec::new();
         for _ in 0..arguments.frames.repeat.unwrap_or(0) {

@@ -15,6 +15,7 @@ use crate::args::InfoArguments;
 use crate::bench::median;
 use crate::cage::{Cage, MeshFacts};
 use crate::console::{Console, print_output};
+use crate::frames::FrameRange;
 use crate::offline::Plan;
 use crate::stats::method_name;
 use crate::text_table::{TextTable, bytes_text, milliseconds_text};
@@ -44,7 +45,7 @@ fn surface_desc(arguments: &InfoArguments, cage: &Cage) -> Result<SurfaceDesc> {
             let crease_patches = surface.crease_patches.into();
             Ok(SurfaceDesc { method: surface.method()?, level, crease_patches })
         }
-        _ => Ok(Plan::unseen(cage, surface, &arguments.view)?.desc),
+        _ => Ok(Plan::unseen(cage, surface, &arguments.view, FrameRange::single(0))?.desc),
     }
 }
 

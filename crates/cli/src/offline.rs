@@ -59,12 +59,14 @@ impl Plan {
     }
 
     /// Decides for a cage that is not drawn: with a given tess factor there need not be a camera that sees it.
-    pub fn unseen(cage: &Cage, surface: &SurfaceArguments, view: &ViewArguments) -> Result<Self> {
-        let camera = match (cage.camera(view, 0), surface.density()) {
-            (Err(_), Density::Tess(_)) => Camera::upright("none", Vec3::Z, Vec3::ZERO, 45.0, 1.0)?,
-            (camera, _) => camera?,
-        };
-        Self::with_cameras(cage, surface, view, &[camera])
+    pub fn unseen(cage: &Cage, surface: &SurfaceArguments, view: &ViewArguments, range: FrameRange) -> Result<Self> {
+        match (cage.camera(view, 0), surface.density()) {
+            (Err(_), Density::Tess(_)) => {
+                let nowhere = Camera::upright("none", Vec3::Z, Vec3::ZERO, 45.0, 1.0)?;
+                Self::with_cameras(cage, surface, view, &[nowhere])
+            }
+            _ => Self::new(cage, surface, view, range),
+        }
     }
 
     /// `cameras` of all frames, of which there is one at least.

@@ -45,23 +45,6 @@ impl FrameCamera {
         let dy = Vec3::new(0.0, -2.0 / (height * self.projection.y_axis.y), 0.0);
         [dx, dy].map(|v| to_world * v)
     }
-
-    /// Diameter in pixels of a sphere as seen by the camera, by the depth of its centre; 0 when it lies behind the
-    /// camera, infinite when the camera is inside. Unlike an edge's own length it does not vanish at silhouettes.
-    pub fn projected_diameter(&self, centre: Vec3, radius: f64) -> f64 {
-        let seen = self.world_to_camera.transform_point3(centre).as_dvec3();
-        let depth = -seen.z;
-        if depth < -radius {
-            return 0.0;
-        }
-        let distance = seen.length();
-        if distance <= radius {
-            return f64::INFINITY;
-        }
-        // Beside the eye depth says nothing any more; the distance does.
-        let away = if depth > radius { depth } else { distance };
-        radius * f64::from(self.projection.y_axis.y.abs()) * f64::from(self.size[1]) / away
-    }
 }
 
 #[cfg(test)]
@@ -95,18 +78,5 @@ mod tests {
         };
         let moved = project(camera().jittered(Vec2::new(0.3, -0.2))) - project(camera());
         assert!((moved - Vec2::new(0.3, -0.2)).length() < 1e-3);
-    }
-
-    #[test]
-    fn a_sphere_behind_the_camera_has_no_size_and_one_around_it_no_bound() {
-        let camera = camera();
-        let back = camera.world_to_camera.inverse();
-        assert_eq!(camera.projected_diameter(back.transform_point3(Vec3::new(0.0, 0.0, 5.0)), 1.0), 0.0);
-        assert_eq!(camera.projected_diameter(back.transform_point3(Vec3::new(0.0, 0.0, 0.5)), 1.0), f64::INFINITY);
-        let beside = camera.projected_diameter(back.transform_point3(Vec3::new(3.0, 0.0, -0.5)), 1.0);
-        assert!(beside.is_finite() && beside > 0.0);
-        let ahead = camera.projected_diameter(back.transform_point3(Vec3::new(0.0, 0.0, -10.0)), 1.0);
-        let expected = 2.0 / (0.4_f64.tan() * 2.0 * 10.0) * 200.0;
-        assert!((ahead - expected).abs() < 1e-2);
     }
 }

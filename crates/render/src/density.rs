@@ -160,6 +160,8 @@ pub fn density(
 
 #[cfg(test)]
 mod tests {
+    use glam::Mat4;
+
     use super::*;
 
     #[test]
@@ -169,5 +171,41 @@ mod tests {
             assert!(factor / (level as f32).exp2() <= 1.0);
         }
         assert_eq!(isolation_level(64.0, 3), 3);
+    }
+
+    fn frame() -> FrameInput {
+        let projection = Mat4::from_cols_array_2d(&[
+            [1.2, 0.0, 0.0, 0.0],
+            [0.0, 2.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, -1.0],
+            [0.0, 0.0, 0.1, 0.0],
+        ]);
+        let camera = FrameCamera { world_to_camera: Mat4::IDENTITY, projection, size: [300, 200] };
+        let options = FrameOptions { density: Density::EdgePixels(4.0), ..FrameOptions::default() };
+        frame_input(&camera, &options, 10, 1, 8).expect("a density")
+    }
+
+    #[test]
+    fn a_sphere_ahead_has_its_projected_diameter() {
+        // 2 r over the height of the view at its depth, 2 / 2 depth, of 200 pixels; edges of 4.
+        let density = sphere_density(&frame(), [3.0, 1.0, -20.0], 2.0);
+        assert!((density - 2.0 * 2.0 / 20.0 * 200.0 / 4.0).abs() < 1e-4, "{density}");
+    }
+
+    #[test]
+    fn a_sphere_around_the_eye_has_a_bound_and_one_behind_it_none() {
+        let frame = frame();
+        let around = sphere_density(&frame, [0.0, 0.0, -0.01], 2.0);
+        assert!((around - 4.0 * 400.0 / 4.0).abs() < 1e-3, "{around}");
+        assert_eq!(sphere_density(&frame, [0.5, 0.0, 4.5], 2.0), 0.0);
+        // It fades over the length of a radius.
+        let behind = [2.0, 2.5, 3.0, 3.5, 4.0].map(|z| sphere_density(&frame, [0.0, 0.0, z], 2.0));
+        assert!(behind.windows(2).all(|pair| pair[0] > pair[1]), "{behind:?}");
+    }
+
+    #[test]
+    fn what_is_no_number_is_no_density() {
+        assert_eq!([f32::NAN, -1.0, f32::NEG_INFINITY].map(bounded), [0.0; 3]);
+        assert_eq!([f32::INFINITY, 1e30].map(bounded), [MAX_DENSITY; 2]);
     }
 }

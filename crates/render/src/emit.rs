@@ -1,7 +1,7 @@
 //! The emit stage: which patches are drawn, in how many pieces, and the draws of them. Shaders: `glsl/emit.comp`, and
 //! `glsl/finish_lists.comp`, which closes the lists.
 
-use planish_gpu::{ComputePipeline, Device, Encoder, SpecConstant};
+use planish_gpu::{ComputePipeline, Device, Encoder, Feature, SpecConstant};
 use planish_shaders as shaders;
 use planish_shaders::{DrawEntry, EmitPush, EmitView, LimitPoint, Object};
 use planish_subdiv::patch::RegularPatch;
@@ -36,7 +36,8 @@ pub(crate) struct Emit {
 
 impl Emit {
     pub fn new(device: &Device, needs: &FrameNeeds) -> Result<Self, Error> {
-        let batch = if device.is_software() { BATCH_VERTICES } else { 0 };
+        let is_batched = device.is_software() && device.has(Feature::DrawIndirectCount);
+        let batch = if is_batched { BATCH_VERTICES } else { 0 };
         let spec = [
             SpecConstant { id: shaders::emit_patches_comp::SPEC_SPACING, bits: needs.spacing.constant() },
             SpecConstant { id: shaders::emit_patches_comp::SPEC_BATCH_VERTICES, bits: batch },
@@ -51,7 +52,7 @@ impl Emit {
         })
     }
 
-    /// Records the stage: five dispatches. Takes the time `emit`.
+    /// Records the stage: four dispatches, and one where patches may be cut. Takes the time `emit`.
     pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
         let scene = address(&surface.frame.scene);
         let heads = &surface.lists.heads;

@@ -60,7 +60,7 @@ impl Select {
         ]);
     }
 
-    /// Records the stages: as many dispatches as there are levels, and eight. Takes the times `density` and `select`.
+    /// Records the stages: a dispatch a level, level 0 too, and five; seven where there are n-gons. Takes the times `density` and `select`.
     pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
         let scene = address(&surface.frame.scene);
         let heads = &surface.lists.heads;

@@ -201,10 +201,8 @@ impl Surface {
     /// its camera's matrix besides.
     pub fn set_frame(&self, camera: &FrameCamera, options: &FrameOptions) -> Result<(), Error> {
         self.frame.input.write(0, &[self.frame_input(camera, options)?])?;
-        let data = FrameData {
-            scene: address(&self.frame.scene),
-            world_to_camera: camera.world_to_camera.to_cols_array_2d(),
-        };
+        let data =
+            FrameData { scene: address(&self.frame.scene), world_to_camera: camera.world_to_camera.to_cols_array_2d() };
         Ok(self.frame.data.write(0, &[data])?)
     }
 

@@ -2,7 +2,7 @@
 
 use crate::topology::{Level, Location, NONE};
 
-/// Where a patch lies, which level it is of and what it borders, in two words.
+/// Where a patch lies, which level it is of and what it borders, in three words.
 ///
 /// | word | bits | meaning |
 /// |---|---|---|
