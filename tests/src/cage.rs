@@ -139,11 +139,15 @@ impl Cage {
 
     /// Length of the bounding box' diagonal.
     pub fn diagonal(&self) -> f64 {
-        let extent = |axis: usize| {
-            let along = || self.positions.iter().map(|position| position[axis]);
-            along().fold(f64::MIN, f64::max) - along().fold(f64::MAX, f64::min)
-        };
-        (0..3).map(|axis| extent(axis).powi(2)).sum::<f64>().sqrt()
+        let (low, high) = self.bounding_box();
+        (0..3).map(|axis| (high[axis] - low[axis]).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// The lowest and the highest coordinates.
+    pub fn bounding_box(&self) -> ([f64; 3], [f64; 3]) {
+        let along = |axis: usize| self.positions.iter().map(move |position| position[axis]);
+        let low = [0, 1, 2].map(|axis| along(axis).fold(f64::MAX, f64::min));
+        (low, [0, 1, 2].map(|axis| along(axis).fold(f64::MIN, f64::max)))
     }
 
     /// The sides of Ptex faces at which the limit surface ends, and the number of loops that they make.

@@ -8,6 +8,8 @@
 //! | `cage` | a mesh file's faces: Ptex numbering, boundary |
 //! | `ply` | dumps, read and thinned out |
 //! | `oracle` | a dump against OpenSubdiv's limit surface |
+//! | `judge` | a dump judged as a whole |
+//! | `view` | cameras at odd places |
 //! | `weld` | a dump as one connected mesh |
 //! | `folder` | a folder to write into, which must end as it was meant to |
 //! | `layers` | an EXR file's channels |
@@ -16,10 +18,12 @@
 pub mod cage;
 pub mod folder;
 pub mod golden;
+pub mod judge;
 pub mod layers;
 pub mod oracle;
 pub mod parallel;
 pub mod ply;
 pub mod program;
 pub mod repository;
+pub mod view;
 pub mod weld;

@@ -87,21 +87,20 @@ impl Dump {
         bytes.extend((0..kept.len() as u32).flat_map(|index| triangle_bytes(3 * index)));
         fs::write(path, bytes).map_err(|error| format!("{}: {error}", path.display()))
     }
+}
 
-    /// The parameter area that the triangles of each Ptex face cover, counter-clockwise ones counted positive.
-    pub fn covered_areas(&self, face_count: usize) -> Result<Vec<f64>, String> {
-        let mut areas = vec![0.0; face_count];
-        let vertices: Vec<Vertex> = self.vertices().collect();
-        for (index, [a, b, c]) in vertices.as_chunks::<3>().0.iter().enumerate() {
-            let area = areas.get_mut(a.face as usize).filter(|_| a.face == b.face && a.face == c.face);
-            let area = area.ok_or_else(|| {
-                format!("triangle {index} has Ptex faces {} {} {} of {face_count}", a.face, b.face, c.face)
-            })?;
-            let [[au, av], [bu, bv], [cu, cv]] = [a, b, c].map(|vertex| vertex.uv.map(f64::from));
-            *area += 0.5 * ((bu - au) * (cv - av) - (cu - au) * (bv - av));
-        }
-        Ok(areas)
+/// The parameter area that the triangles of each Ptex face cover, counter-clockwise ones counted positive.
+pub fn covered_areas(vertices: &[Vertex], face_count: usize) -> Result<Vec<f64>, String> {
+    let mut areas = vec![0.0; face_count];
+    for (index, [a, b, c]) in vertices.as_chunks::<3>().0.iter().enumerate() {
+        let area = areas.get_mut(a.face as usize).filter(|_| a.face == b.face && a.face == c.face);
+        let area = area.ok_or_else(|| {
+            format!("triangle {index} has Ptex faces {} {} {} of {face_count}", a.face, b.face, c.face)
+        })?;
+        let [[au, av], [bu, bv], [cu, cv]] = [a, b, c].map(|vertex| vertex.uv.map(f64::from));
+        *area += 0.5 * ((bu - au) * (cv - av) - (cu - au) * (bv - av));
     }
+    Ok(areas)
 }
 
 fn count_after(header: &str, words: &str) -> Option<usize> {

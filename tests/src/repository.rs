@@ -58,6 +58,11 @@ pub fn is_about_rules(mesh: &Path) -> bool {
     RULES.iter().any(|rule| stem(mesh).starts_with(rule))
 }
 
+/// Whether a scene has hierarchical edits, which OpenSubdiv does not know.
+pub fn is_edited(mesh: &Path) -> bool {
+    stem(mesh).starts_with("edit_")
+}
+
 /// A file's name without its extension.
 pub fn stem(path: &Path) -> &str {
     path.file_stem().and_then(OsStr::to_str).expect("mesh files have plain names")

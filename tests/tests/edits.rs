@@ -5,16 +5,13 @@ use std::path::{Path, PathBuf};
 
 use planish_scene::{LoadOptions, load};
 use planish_subdiv::eval::Evaluator;
+use planish_tests::cage::Cage;
 use planish_tests::oracle::POSITION_TOLERANCE;
 use planish_tests::parallel::check_all;
 use planish_tests::ply::Dump;
 use planish_tests::program::Planish;
-use planish_tests::repository::{scenes, stem};
-
-/// Whether a scene is about edits.
-fn is_edited(path: &Path) -> bool {
-    stem(path).starts_with("edit_")
-}
+use planish_tests::repository::{is_edited, scenes};
+use planish_tests::view::Place;
 
 /// Every vertex of a dump against the limit surface. Normals away from points without a tangent plane may be off by
 /// `normal_degrees`.
@@ -56,9 +53,17 @@ fn check(mesh: &Path, flags: &str, normal_degrees: f64) -> Result<(), String> {
 fn dumps_of_edited_scenes_are_the_limit_surface() {
     let meshes: Vec<PathBuf> = scenes().into_iter().filter(|mesh| is_edited(mesh)).collect();
     assert!(!meshes.is_empty(), "there are scenes with edits");
-    let factors = ["1", "4", "7.3", "16"];
-    let cases: Vec<_> = meshes.iter().flat_map(|mesh| factors.map(|tess| (mesh.clone(), tess))).collect();
+    let cases: Vec<_> = meshes.iter().flat_map(|mesh| ["1", "13.7"].map(|tess| (mesh, tess))).collect();
     check_all(&cases, |(mesh, tess)| check(mesh, &format!("--tess {tess}"), 0.05));
+}
+
+#[test]
+fn dynamic_dumps_of_edited_scenes_are_the_limit_surface_from_odd_places() {
+    let meshes: Vec<PathBuf> = scenes().into_iter().filter(|mesh| is_edited(mesh)).collect();
+    let cases: Vec<_> = meshes.iter().zip(Place::ALL.into_iter().cycle()).collect();
+    check_all(&cases, |(mesh, place)| {
+        check(mesh, &format!("--edge-pixels 4 --size 96x54 {}", place.flags(&Cage::read(mesh))), 0.05)
+    });
 }
 
 #[test]

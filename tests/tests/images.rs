@@ -172,32 +172,6 @@ fn images_of_any_size_are_written() {
 }
 
 #[test]
-fn the_same_command_writes_the_same_bytes_with_any_number_of_threads() {
-    let written = |thread_count: Option<&str>| {
-        let folder = temporary();
-        let mesh = scene("mixed_triangles_quads");
-        let out = |name| folder.path().join(name);
-        let on = |command: Planish| match thread_count {
-            Some(count) => command.env("LP_NUM_THREADS", count),
-            None => command,
-        };
-        let image = format!("--size 200x150 --samples 3 {ALL_LAYERS} -o");
-        on(Planish::render(&mesh, &out("a.exr")).flags(&image).path(&out("a.png"))).run().silent_success().unwrap();
-        on(Planish::dump(&mesh, &out("a.ply")).flags("--tess 5.3")).run().silent_success().unwrap();
-        let in_folder = |path: &Path| path.file_name().unwrap().to_owned();
-        contents(folder.path()).into_iter().map(|(path, bytes)| (in_folder(&path), bytes)).collect::<Vec<_>>()
-    };
-    let first = written(None);
-    assert_eq!(first.len(), 3);
-    for thread_count in [None, Some("1"), Some("2"), Some("5")] {
-        let again = written(thread_count);
-        for ((name, bytes), (_, expected)) in again.iter().zip(&first) {
-            assert!(bytes == expected, "{} with {thread_count:?} threads has other bytes", name.display());
-        }
-    }
-}
-
-#[test]
 fn culling_changes_no_pixel_of_a_closed_mesh() {
     let flags = format!("--size 100x100 {OBLIQUE} --tess 8 --view normal");
     let pixels = |more: &str| {
@@ -233,9 +207,6 @@ fn drawn_share(mesh: &Path, flags: &str, compares_images: bool) -> Result<f64, S
     if levels.iter().filter_map(Value::as_u64).sum::<u64>() != patch_count(&frame) {
         return wrong("the levels are not the sum of the kinds");
     }
-    if frame["gpu_ms"]["emit"].as_f64() <= Some(0.0) || whole["gpu_ms"]["emit"].as_f64() != Some(0.0) {
-        return wrong("culling takes time exactly where there is some");
-    }
     if (patch_count(&frame) < patch_count(&whole)) != (frame["triangles"].as_u64() < whole["triangles"].as_u64()) {
         return wrong("fewer patches have fewer triangles");
     }
@@ -245,7 +216,7 @@ fn drawn_share(mesh: &Path, flags: &str, compares_images: bool) -> Result<f64, S
 #[test]
 fn patches_outside_of_the_image_are_left_out_without_a_trace() {
     let meshes = ["grid_8x8", "hero", "boundary_valences", "boundary_none", "open_cylinder", "mixed_triangles_quads"];
-    let ways = ["--tess 2 --spacing equal", "--tess 5.3", "--tess 3.3 --spacing fractional-even --samples 3"];
+    let ways = ["--edge-pixels 3", "--tess 3.3 --spacing fractional-even --samples 3"];
     check_all(&meshes, |mesh| {
         for way in ways {
             let flags = format!("--size 90x70 {ALL_LAYERS} --fov 10 {way}");
@@ -262,7 +233,7 @@ fn patches_outside_of_the_image_are_left_out_without_a_trace() {
 fn patches_that_are_turned_away_are_left_out() {
     let meshes = [["genus_2", "cube", "two_components"].map(scene).to_vec(), models()].concat();
     check_all(&meshes, |mesh| {
-        for way in ["--tess 8 --spacing equal", "--tess 5.3", "--tess 4.4 --spacing fractional-even"] {
+        for way in ["--edge-pixels 2 --spacing equal", "--tess 5.3"] {
             // Images are compared where only the emit stage differs, in the tests of the render crate: two sides of an
             // edge agree to rounding, and backs may be seen between them.
             let share = drawn_share(mesh, &format!("--size 90x70 {way}"), false)?;

@@ -18,8 +18,11 @@ const SEEDS: std::ops::Range<u64> = 1000..1040;
 /// Seeds of manifold cages, whose tags reach farther.
 const MANIFOLD_SEEDS: std::ops::Range<u64> = 2000..2040;
 /// Flags by turns.
-const FLAGS: [&str; 5] = [
+const FLAGS: [&str; 8] = [
     "--tess 4",
+    "--edge-pixels 4 --size 96x54 --fov 20",
+    "--edge-pixels 2 --size 96x54 --spacing fractional-even --crease-patches single",
+    "--edge-pixels 9 --size 160x90 --spacing equal --eye 0.1,0.2,0.3 --target 1,1,0",
     "--tess 7.3 --crease-patches single",
     "--tess 2.5 --spacing fractional-even",
     "--tess 5 --spacing equal --crease-patches none",

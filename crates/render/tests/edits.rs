@@ -1,12 +1,17 @@
 //! Hierarchical edits on the GPU: against the CPU, and moved without new tables.
 
+use glam::{Mat4, Vec3};
 use planish_gpu::{Device, DeviceOptions, Encoder};
-use planish_render::{PointStages, Surface, SurfaceDesc, density, limit, preprocess, subdivide};
+use planish_render::{
+    Density, FrameCamera, FrameNeeds, FrameOptions, FrameStages, ObjectDesc, Selection, Spacing, Surface, SurfaceDesc,
+    limit, preprocess, subdivide,
+};
 use planish_subdiv::ControlMesh;
 use planish_subdiv::eval::Evaluator;
 use planish_subdiv::mesh::{EditOperation, HierarchicalEdit};
 use planish_subdiv::patch::{evaluate, reflect};
 use planish_subdiv::tables::Tables;
+use planish_subdiv::topology::NONE;
 
 /// A cube of 2 x 2 quads a side, with edits at three levels; two of them move the same point.
 fn edited_cube() -> ControlMesh {
@@ -58,9 +63,12 @@ fn largest_difference(mesh: &ControlMesh, tables: &Tables, points: &[[f32; 3]]) 
         }
     }
     let limits = limit::limit(tables, points);
-    for quad in &tables.filling {
-        for ((u, v), corner) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].into_iter().zip(quad.corners) {
-            compare(quad.info.location, u, v, limits[corner as usize].position.map(f64::from));
+    const CORNERS: [(f64, f64); 4] = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+    const MIDDLES: [(f64, f64); 4] = [(0.5, 0.0), (1.0, 0.5), (0.5, 1.0), (0.0, 0.5)];
+    for face in tables.irregular.iter().filter(|face| !face.is_hidden) {
+        let places = CORNERS.into_iter().zip(face.limits).chain(MIDDLES.into_iter().zip(face.midpoints));
+        for ((u, v), limit) in places.filter(|&(_, limit)| limit != NONE) {
+            compare(face.info.location, u, v, limits[limit as usize].position.map(f64::from));
         }
     }
     largest
@@ -72,12 +80,18 @@ fn edits_on_the_gpu_equal_those_of_the_cpu_and_move_without_new_tables() {
     let device = Device::open(&options).expect("a Vulkan device with the validation layer");
     let mut mesh = edited_cube();
     let desc = SurfaceDesc { level: 4, ..SurfaceDesc::default() };
-    let made = preprocess(&mesh, &desc).expect("a legal cage");
-    let factors = density::level_factors(16.0, desc.spacing, &made.tables).expect("factors");
-    let surface = Surface::new(&device, &mesh, desc, made, &factors).expect("upload");
-    let stages = PointStages::new(&device).expect("pipelines");
+    let made = preprocess(&[&mesh], &desc).expect("a legal cage");
+    let surface = Surface::new(&device, &[&mesh], &[ObjectDesc::identity(0)], desc, made).expect("upload");
+    let stages = FrameStages::new(&device, &FrameNeeds::all(Spacing::Equal)).expect("pipelines");
+    // All that can be refined is.
+    let options =
+        FrameOptions { density: Density::Tess(16.0), selection: Selection::Static, ..FrameOptions::default() };
+    let projection = Mat4::from_scale(Vec3::ONE);
+    let camera = FrameCamera { world_to_camera: Mat4::IDENTITY, projection, size: [64, 48] };
+    surface.set_frame(&camera, &options).expect("a frame");
     let mut encoder = Encoder::new(&device, "points").expect("encoder");
     stages.record(&mut encoder, &surface);
+    FrameStages::record_end(&mut encoder, &surface);
     let recorded = encoder.finish().expect("recording");
     for shift in [0.0, 0.05] {
         for edit in &mut mesh.edits {
@@ -91,9 +105,18 @@ fn edits_on_the_gpu_equal_those_of_the_cpu_and_move_without_new_tables() {
         let points = surface.download_points(&device).expect("points");
         let mut tables = surface.tables().clone();
         tables.edits = tables.point_edits(&mesh.edits);
-        assert_eq!(points, subdivide::subdivide(&tables, &mesh.positions));
-        assert_eq!(surface.download_limits(&device).expect("limits"), limit::limit(&tables, &points));
-        let difference = largest_difference(&mesh, &tables, &points);
+        let (twin, limits) = (subdivide::subdivide(&tables, &mesh.positions), surface.download_limits(&device));
+        let (twin_limits, limits) = (limit::limit(&tables, &twin), limits.expect("limits"));
+        let mut in_use = surface.download_rows_in_use(&device).expect("rows");
+        for limit in in_use.pop().expect("limit points") {
+            assert_eq!(limits[limit as usize], twin_limits[limit as usize]);
+        }
+        let rows: Vec<u32> = in_use.into_iter().flatten().collect();
+        assert!(2 * rows.len() > tables.stencils.rows.len());
+        for place in rows.iter().map(|row| (tables.cage_point_count + row) as usize) {
+            assert_eq!(points[place], twin[place]);
+        }
+        let difference = largest_difference(&mesh, &tables, &twin);
         assert!(difference < 2e-6, "{difference}");
     }
     assert_eq!(device.validation_messages(), Vec::<String>::new());

@@ -7,12 +7,14 @@ mod judge;
 mod vector;
 
 use planish_generate::random_cage::{Features, Recipe};
-use planish_render::{Spacing, SurfaceDesc, SurfaceMethod, limit, preprocess, subdivide};
+use planish_render::{SurfaceDesc, SurfaceMethod, limit, preprocess, subdivide};
 use planish_scene::{LoadOptions, read_obj};
 use planish_subdiv::ControlMesh;
-use planish_subdiv::patch::{RegularPatch, SurfacePoint, evaluate_crease, reflect};
+use planish_subdiv::patch::{PatchInfo, RegularPatch, SurfacePoint, evaluate_crease, reflect};
 use planish_subdiv::refine::CreasePatches;
+use planish_subdiv::selection::{Selection, density_rings, select};
 use planish_subdiv::tables::Tables;
+use planish_subdiv::topology::NONE;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -24,8 +26,10 @@ const FEATURES: Features = Features::ALL;
 const CASES: u32 = 1000;
 /// Where regular patches are evaluated, in their own domain.
 const SAMPLES: [[f64; 2]; 5] = [[0.0, 0.0], [1.0, 0.5], [0.3, 0.7], [0.0, 1.0], [0.85, 0.1]];
-/// Where filling quads have limit points besides: in the middles of edges and in the centre.
-const MIDDLES: [[f64; 2]; 5] = [[0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5], [0.5, 0.5]];
+/// The middles of edges.
+const MIDDLES: [[f64; 2]; 4] = [[0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5]];
+/// Densities at which faces are selected.
+const DENSITIES: [f32; 5] = [0.0, 1.5, 3.0, 9.0, 40.0];
 
 fn regular_point(patch: &RegularPatch, points: &[[f32; 3]], [u, v]: [f64; 2]) -> SurfacePoint {
     let mut controls = patch.points.map(|point| points[point as usize].map(f64::from));
@@ -42,15 +46,49 @@ fn check_tables(judge: &mut Judge, tables: &Tables, mesh: &ControlMesh) -> Resul
             judge.check(&patch.info, sample, found.position, found.normal())?;
         }
     }
-    for (quad_index, quad) in tables.filling.iter().enumerate() {
-        let middles = tables.filling_midpoints.get(quad_index).into_iter().flatten();
-        for (&point, sample) in quad.corners.iter().chain(middles).zip(CORNERS.into_iter().chain(MIDDLES)) {
-            let limit = &limits[point as usize];
-            judge.check(&quad.info, sample, limit.position.map(f64::from), Some(limit.normal.map(f64::from)))?;
-        }
+    let mut check_limit = |info: &PatchInfo, limit: u32, sample| {
+        let limit = &limits[limit as usize];
+        judge.check(info, sample, limit.position.map(f64::from), Some(limit.normal.map(f64::from)))
+    };
+    for quad in &tables.filling {
+        quad.corners.iter().zip(CORNERS).try_for_each(|(&limit, sample)| check_limit(&quad.info, limit, sample))?;
     }
-    let infos = tables.patches.iter().map(|patch| patch.info).chain(tables.filling.iter().map(|quad| quad.info));
-    judge.check_coverage(&infos.collect::<Vec<_>>())
+    for face in tables.irregular.iter().filter(|face| !face.is_hidden) {
+        let mut places = face.limits.iter().zip(CORNERS).chain(face.midpoints.iter().zip(MIDDLES));
+        places.try_for_each(|(&limit, sample)| match limit {
+            NONE => Ok(()),
+            limit => check_limit(&face.info, limit, sample),
+        })?;
+    }
+    if !tables.filling.is_empty() {
+        return judge.check_coverage(&tables.filling.iter().map(|quad| quad.info).collect::<Vec<_>>());
+    }
+    check_cuts(judge, tables, mesh)
+}
+
+/// What is drawn covers the surface, whatever the densities: everywhere the same, and by chance at each vertex.
+fn check_cuts(judge: &mut Judge, tables: &Tables, mesh: &ControlMesh) -> Result<(), String> {
+    let ranges = tables.ranges();
+    let mut state = mesh.positions.len() as u64;
+    for turn in 0..4 {
+        let densities: Vec<f32> = (0..ranges.cage_points.len())
+            .map(|_| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                DENSITIES[(state >> 33) as usize % DENSITIES.len()]
+            })
+            .collect();
+        let slots = density_rings(tables, &ranges, &densities, &vec![0; densities.len()]);
+        let cut = match turn {
+            0 => select(tables, &ranges, &slots, Selection::Static { frame_density: 0.0 }),
+            1 => select(tables, &ranges, &slots, Selection::Static { frame_density: f32::INFINITY }),
+            _ => select(tables, &ranges, &slots, Selection::Dynamic),
+        };
+        let patches = ranges.patches[0].clone().chain(cut.patches.iter().copied());
+        let patches = patches.map(|place| tables.patches[place as usize].info);
+        let leaves = cut.leaves.iter().map(|leaf| tables.irregular[leaf.face as usize].info);
+        judge.check_coverage(&patches.chain(leaves).collect::<Vec<_>>())?;
+    }
+    Ok(())
 }
 
 fn check(recipe: Recipe, desc: &SurfaceDesc) -> Result<(), String> {
@@ -58,7 +96,7 @@ fn check(recipe: Recipe, desc: &SurfaceDesc) -> Result<(), String> {
     let mut scene =
         read_obj("random.obj", text.as_bytes(), &LoadOptions::default()).map_err(|error| error.to_string())?;
     let mesh = scene.meshes.remove(0).control_mesh;
-    let made = preprocess(&mesh, desc).map_err(|error| error.to_string())?;
+    let made = preprocess(&[&mesh], desc).map_err(|error| error.to_string())?;
     check_tables(&mut Judge::new(&mesh)?, &made.tables, &mesh)
 }
 
@@ -89,10 +127,9 @@ proptest! {
     fn adaptive_tables_of_random_cages_give_the_limit_surface(
         recipe in recipes(),
         level in 1..=5_u32,
-        spacing in prop::sample::select(vec![Spacing::Equal, Spacing::FractionalEven]),
         crease_patches in crease_patches(),
     ) {
-        let desc = SurfaceDesc { method: SurfaceMethod::Fas, spacing, level, crease_patches };
+        let desc = SurfaceDesc { method: SurfaceMethod::Dfas, level, crease_patches };
         if let Err(fault) = check(recipe, &desc) {
             prop_assert!(false, "{fault}");
         }

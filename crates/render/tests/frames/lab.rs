@@ -1,0 +1,153 @@
+//! A device with the programs of all spacings.
+
+use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, DeviceOptions, Encoder, Image, PipelineStatistics};
+use planish_render::{
+    DrawOptions, DrawPasses, DumpPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, PatchKind, Spacing,
+    Status, Surface, SurfaceDesc, Targets, View,
+};
+use planish_shaders::DrawEntry;
+
+/// All spacings.
+pub const SPACINGS: [Spacing; 3] = [Spacing::Equal, Spacing::FractionalOdd, Spacing::FractionalEven];
+
+/// A device, and the stages of each spacing.
+pub struct Lab {
+    pub device: Device,
+    stages: [FrameStages; 3],
+}
+
+impl Lab {
+    pub fn new() -> Self {
+        let options = DeviceOptions { validation: true, selector: None, memory_budget: None };
+        let device = Device::open(&options).expect("a Vulkan device with the validation layer");
+        let stages = SPACINGS.map(|spacing| FrameStages::new(&device, &FrameNeeds::all(spacing)).expect("pipelines"));
+        Self { device, stages }
+    }
+
+    fn stages(&self, spacing: Spacing) -> &FrameStages {
+        &self.stages[spacing.constant() as usize]
+    }
+
+    /// Runs the stages before drawing, once, with the lists as large as they are.
+    pub fn run_once(
+        &self,
+        surface: &Surface,
+        spacing: Spacing,
+        camera: &FrameCamera,
+        options: &FrameOptions,
+    ) -> Status {
+        surface.set_frame(camera, options).expect("a frame");
+        let mut encoder = Encoder::new(&self.device, "stages").expect("encoder");
+        self.stages(spacing).record(&mut encoder, surface);
+        FrameStages::record_end(&mut encoder, surface);
+        self.device.submit_and_wait(&encoder.finish().expect("recording")).expect("submission");
+        surface.status().expect("status")
+    }
+
+    /// Runs the stages until the lists have room.
+    pub fn run(&self, surface: &mut Surface, spacing: Spacing, camera: &FrameCamera, options: &FrameOptions) -> Status {
+        loop {
+            let status = self.run_once(surface, spacing, camera, options);
+            if !surface.grow(&self.device).expect("room") {
+                return status;
+            }
+        }
+    }
+
+    /// Draws a frame, once.
+    pub fn draw_once(
+        &self,
+        surface: &Surface,
+        easel: &Easel,
+        camera: &FrameCamera,
+        options: &FrameOptions,
+    ) -> PipelineStatistics {
+        surface.set_frame(camera, options).expect("a frame");
+        let mut encoder = Encoder::new(&self.device, "frame").expect("encoder");
+        self.stages(easel.spacing).record(&mut encoder, surface);
+        easel.passes.record(&mut encoder, surface, camera, &easel.targets);
+        FrameStages::record_end(&mut encoder, surface);
+        let report = self.device.submit_and_wait(&encoder.finish().expect("recording")).expect("submission");
+        report.statistics[0].1
+    }
+
+    /// Draws a frame, until the lists have room.
+    pub fn draw(
+        &self,
+        surface: &mut Surface,
+        easel: &Easel,
+        camera: &FrameCamera,
+        options: &FrameOptions,
+    ) -> Vec<Vec<u32>> {
+        loop {
+            let statistics = self.draw_once(surface, easel, camera, options);
+            if !surface.grow(&self.device).expect("room") {
+                let entries = entry_count(&surface.status().expect("status"));
+                assert_eq!(statistics.tessellation_control_patches, entries, "not every entry was drawn once");
+                return easel.words(&self.device);
+            }
+        }
+    }
+
+    /// Entries of each kind that the last frame listed, in ascending order.
+    pub fn entries(&self, surface: &Surface) -> [Vec<DrawEntry>; 4] {
+        self.unsorted_entries(surface).map(|mut entries| {
+            entries.sort_by_key(|entry| (entry.object, entry.place, entry.flags));
+            entries
+        })
+    }
+
+    /// Entries of each kind that the last frame listed, in their order.
+    pub fn unsorted_entries(&self, surface: &Surface) -> [Vec<DrawEntry>; 4] {
+        surface.status().expect("status").draw_heads.map(|head| {
+            let range = head.first..head.first + head.count.min(head.capacity);
+            surface.download_entries(&self.device, range).expect("entries")
+        })
+    }
+
+    pub fn dump_passes(&self, desc: &SurfaceDesc, spacing: Spacing) -> DumpPasses {
+        DumpPasses::new(&self.device, desc, &FrameNeeds::all(spacing)).expect("pipelines")
+    }
+
+    pub fn assert_silent(&self) {
+        assert_eq!(self.device.validation_messages(), Vec::<String>::new());
+    }
+}
+
+/// Number of patches that are drawn.
+pub fn entry_count(status: &Status) -> u64 {
+    PatchKind::ALL.iter().map(|&kind| u64::from(status.draw_heads[kind as usize].count)).sum()
+}
+
+/// Images with all layers, and the passes that draw into them.
+pub struct Easel {
+    pub spacing: Spacing,
+    passes: DrawPasses,
+    targets: Targets,
+}
+
+impl Easel {
+    pub fn new(lab: &Lab, spacing: Spacing, cull_back: bool, size: [u32; 2]) -> Self {
+        let options = DrawOptions { view: View::Shaded, layers: true, cull_back };
+        let (desc, needs) = (SurfaceDesc::default(), FrameNeeds::all(spacing));
+        Self {
+            spacing,
+            passes: DrawPasses::new(&lab.device, &desc, &needs, &options).expect("pipelines"),
+            targets: Targets::new(&lab.device, size, true).expect("images"),
+        }
+    }
+
+    /// Everything that the images hold.
+    pub fn words(&self, device: &Device) -> Vec<Vec<u32>> {
+        std::iter::once(self.targets.color()).chain(self.targets.layers()).map(|image| words(device, image)).collect()
+    }
+}
+
+fn words(device: &Device, image: &Image) -> Vec<u32> {
+    let desc = BufferDesc { name: "image", kind: BufferKind::Readback, size: image.copy_size() };
+    let buffer = Buffer::new(device, &desc).expect("a buffer");
+    let mut encoder = Encoder::new(device, "read-back").expect("encoder");
+    encoder.copy_image_to_buffer(image, &buffer, 0);
+    device.submit_and_wait(&encoder.finish().expect("recording")).expect("submission");
+    buffer.read(0, (image.copy_size() / 4) as usize).expect("pixels")
+}
