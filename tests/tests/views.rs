@@ -1,8 +1,10 @@
-//! Frames that the view selects: exact, covered once and closed, wherever the camera stands.
+//! Frames in which densities vary, with the view or by tags: exact, covered once and closed, wherever the camera stands.
 
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use planish_tests::cage::Cage;
+use planish_tests::folder::temporary;
 use planish_tests::judge;
 use planish_tests::parallel::check_all;
 use planish_tests::repository::{is_about_rules, models, scenes, stem};
@@ -40,5 +42,36 @@ fn dynamic_dumps_are_the_limit_surface_and_closed_from_odd_places() {
         // So far from the origin floats are as far apart as the shortest edges are long.
         let is_coarse = stem(mesh) == "far_from_origin";
         if is_coarse { judge::check_but_edges(mesh, &flags).map(drop) } else { judge::check(mesh, &flags) }
+    });
+}
+
+/// Factors on the density of one vertex after the other, in no order.
+const DENSITIES: [&str; 7] = ["1", "0.3", "8", "0", "2.7", "0.9", "5"];
+const SPACINGS: [&str; 3] = ["equal", "fractional-odd", "fractional-even"];
+
+/// Writes a mesh with a density for each vertex.
+fn write_dense(mesh: &Path, folder: &Path) -> PathBuf {
+    let vertex_count = Cage::read(mesh).positions.len();
+    let vertices: String = (0..vertex_count).map(|vertex| format!(" {vertex}")).collect();
+    // Squares modulo a prime: neighbours differ, whatever the mesh's order is.
+    let density = |vertex: usize| DENSITIES[(vertex * vertex % 101 + vertex / 3) % DENSITIES.len()];
+    let densities: String = (0..vertex_count).map(|vertex| format!(" {}", density(vertex))).collect();
+    let text = fs::read_to_string(mesh).expect("scenes can be read");
+    let path = folder.join(mesh.file_name().expect("a scene has a name"));
+    let tag = format!("t density {vertex_count}/{vertex_count}/0{vertices}{densities}");
+    fs::write(&path, format!("{text}\n{tag}\n")).expect("a temporary file can be written");
+    path
+}
+
+#[test]
+fn dumps_of_meshes_with_densities_are_the_limit_surface_and_closed() {
+    let cases: Vec<_> = [scenes(), models()].concat().into_iter().zip(SPACINGS.into_iter().cycle()).collect();
+    check_all(&cases, |(mesh, spacing)| {
+        let folder = temporary();
+        let flags = format!("--tess 3 --spacing {spacing}");
+        let mesh = write_dense(mesh, folder.path());
+        // Edges of length 0.003 as above.
+        let is_coarse = stem(&mesh) == "far_from_origin";
+        if is_coarse { judge::check_but_edges(&mesh, &flags).map(drop) } else { judge::check(&mesh, &flags) }
     });
 }

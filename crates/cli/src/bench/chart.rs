@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn axes_end_at_round_numbers() {
-        assert_eq!([0.0, 0.7, 1.0, 17.0, 900.1].map(rounded_up), [1.0, 0.7, 1.0, 20.0, 1000.0]);
+        assert_eq!([0.0, 0.5, 1.0, 17.0, 900.1].map(rounded_up), [1.0, 0.5, 1.0, 20.0, 1000.0]);
     }
 
     #[test]
