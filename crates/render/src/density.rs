@@ -7,7 +7,7 @@ use planish_subdiv::tables::{MeshRanges, Tables};
 
 use crate::camera::FrameCamera;
 use crate::error::Error;
-use crate::objects::{ObjectDesc, columns, largest_edge, to_world};
+use crate::objects::{CageFacts, ObjectDesc, columns, to_world};
 use crate::options::{Density, FrameOptions, Selection};
 use crate::visibility::{dot, point_outside_planes, sub};
 
@@ -82,12 +82,11 @@ pub fn largest_density(
 }
 
 fn largest_edge_density(mesh: &ControlMesh, desc: &ObjectDesc, frame: &FrameInput, object_lod: bool) -> f32 {
-    let object = Object { to_world: columns(&desc.to_world), ..Object::default() };
+    let mut object = Object { to_world: columns(&desc.to_world), ..Object::default() };
     if object_lod {
-        let [low, high] = mesh.bounding_box().unwrap_or_default();
-        let centre = std::array::from_fn(|c| 0.5 * (low[c] + high[c]));
-        let radius = 0.5 * largest_edge(mesh, &desc.to_world);
-        return bounded(sphere_density(frame, to_world(&object, centre), radius));
+        CageFacts::of_mesh(mesh).set(&mut object);
+        let centre = std::array::from_fn(|c| 0.5 * (object.low[c] + object.high[c]));
+        return bounded(sphere_density(frame, to_world(&object, centre), 0.5 * object.largest_edge));
     }
     let at = |vertex: u32| to_world(&object, mesh.positions[vertex as usize]);
     let (mut first, mut largest) = (0, 0.0_f32);

@@ -33,21 +33,64 @@ impl ObjectDesc {
     }
 }
 
+/// What an object needs to know of its cage's positions.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct CageFacts {
+    /// The box around them.
+    pub low: Vec3,
+    pub high: Vec3,
+    /// Length of the longest edge.
+    pub largest_edge: f32,
+}
+
+impl CageFacts {
+    /// Of positions, and the edges between them by their ends.
+    pub fn new(positions: &[[f32; 3]], edges: impl Iterator<Item = [u32; 2]>) -> Self {
+        let at = |vertex: u32| Vec3::from(positions[vertex as usize]);
+        let Some(&first) = positions.first() else { return Self::default() };
+        let start = (Vec3::from(first), Vec3::from(first));
+        let (low, high) = positions.iter().fold(start, |(low, high), &p| (low.min(p.into()), high.max(p.into())));
+        let largest_edge = edges.fold(0.0, |largest: f32, [a, b]| largest.max(at(a).distance(at(b))));
+        Self { low, high, largest_edge }
+    }
+
+    /// Of a mesh.
+    pub fn of_mesh(mesh: &ControlMesh) -> Self {
+        let mut first = 0;
+        let edges = mesh.face_sizes.iter().flat_map(|&sides| {
+            let face = &mesh.face_vertices[first..first + sides as usize];
+            first += sides as usize;
+            (0..face.len()).map(move |i| [face[i], face[(i + 1) % face.len()]])
+        });
+        Self::new(&mesh.positions, edges)
+    }
+
+    /// Writes them into an object with such a cage.
+    pub fn set(&self, object: &mut Object) {
+        object.low = self.low.to_array();
+        object.high = self.high.to_array();
+        object.largest_edge = self.largest_edge * scale_of(object);
+    }
+}
+
+/// How much longer an object's transform makes the axis that it makes longest.
+fn scale_of(object: &Object) -> f32 {
+    object.to_world[..3].iter().map(|&axis| Vec3::from(axis).length()).fold(0.0, f32::max)
+}
+
 /// What an object needs to know of its mesh, besides its place in the tables.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct MeshFacts {
-    low: Vec3,
-    high: Vec3,
+    cage: CageFacts,
     in_hull: bool,
     ptex_face_count: u32,
 }
 
 impl MeshFacts {
     pub fn new(mesh: &ControlMesh, ranges: &MeshRanges) -> Self {
-        let [low, high] = mesh.bounding_box().unwrap_or_default().map(Vec3::from);
         // Chaikin's rule has weights below 0, and edits move points anywhere.
         let in_hull = mesh.edits.is_empty() && mesh.options.creasing == planish_subdiv::mesh::Creasing::Uniform;
-        Self { low, high, in_hull, ptex_face_count: ranges.ptex_faces.len() as u32 }
+        Self { cage: CageFacts::of_mesh(mesh), in_hull, ptex_face_count: ranges.ptex_faces.len() as u32 }
     }
 }
 
@@ -61,24 +104,15 @@ pub(crate) struct ObjectSizes {
 }
 
 /// The objects as the kernels read them.
-pub(crate) fn objects(
-    descs: &[ObjectDesc],
-    meshes: &[&ControlMesh],
-    facts: &[MeshFacts],
-    ranges: &[MeshRanges],
-) -> (Vec<Object>, ObjectSizes) {
+pub(crate) fn objects(descs: &[ObjectDesc], facts: &[MeshFacts], ranges: &[MeshRanges]) -> (Vec<Object>, ObjectSizes) {
     let mut sizes = ObjectSizes::default();
     let mut first_face = 0;
     let mut objects = Vec::with_capacity(descs.len());
     for desc in descs {
         let (range, facts) = (&ranges[desc.mesh], &facts[desc.mesh]);
         let flag = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
-        objects.push(Object {
+        let mut object = Object {
             to_world: columns(&desc.to_world),
-            low: facts.low.to_array(),
-            high: facts.high.to_array(),
-            largest_edge: largest_edge(meshes[desc.mesh], &desc.to_world),
-            displacement: 0.0,
             flags: flag(facts.in_hull, IN_HULL)
                 | flag(desc.hides_backs, HIDES_BACKS)
                 | flag(desc.is_mirrored(), MIRRORED),
@@ -95,7 +129,10 @@ pub(crate) fn objects(
             root_count: range.irregular[0].len() as u32,
             // Edges are numbered through all meshes; each object has its own bits.
             first_edge: sizes.edges.wrapping_sub(range.edges.start),
-        });
+            ..Object::default()
+        };
+        facts.cage.set(&mut object);
+        objects.push(object);
         first_face += facts.ptex_face_count;
         sizes.slots += range.slots.len() as u32;
         sizes.edges += range.edges.len() as u32;
@@ -106,21 +143,6 @@ pub(crate) fn objects(
 pub(crate) fn columns(transform: &Affine3A) -> [[f32; 3]; 4] {
     let m = &transform.matrix3;
     [m.x_axis, m.y_axis, m.z_axis, transform.translation].map(|axis| axis.to_array())
-}
-
-/// Length of a mesh's longest edge, in world space.
-pub(crate) fn largest_edge(mesh: &ControlMesh, to_world: &Affine3A) -> f32 {
-    let at = |vertex: u32| to_world.transform_point3(Vec3::from(mesh.positions[vertex as usize]));
-    let mut largest = 0.0_f32;
-    let mut first = 0;
-    for &sides in &mesh.face_sizes {
-        let face = &mesh.face_vertices[first..first + sides as usize];
-        first += sides as usize;
-        for (i, &vertex) in face.iter().enumerate() {
-            largest = largest.max(at(vertex).distance(at(face[(i + 1) % face.len()])));
-        }
-    }
-    largest
 }
 
 /// `to_world` of `glsl/shared/scene.glsl`, bit for bit where nothing is fused.

@@ -17,7 +17,7 @@ use crate::density::frame_input;
 use crate::error::Error;
 use crate::lists::{Capacities, Phases, Status};
 use crate::marks::Marks;
-use crate::objects::{MeshFacts, ObjectDesc};
+use crate::objects::{CageFacts, MeshFacts, ObjectDesc};
 use crate::options::{FrameOptions, SurfaceMethod};
 use crate::upload::address;
 
@@ -101,6 +101,8 @@ pub struct Surface {
     pub(crate) tables: Tables,
     pub(crate) meshes: Vec<MeshRanges>,
     pub(crate) objects: Vec<Object>,
+    /// The mesh of each object.
+    object_meshes: Vec<usize>,
     pub(crate) phases: Phases,
     pub(crate) buffers: TableBuffers,
     pub(crate) frame: FrameBuffers,
@@ -137,7 +139,7 @@ impl Surface {
         let Preprocessed { tables, meshes: ranges, mut times } = made;
         let facts: Vec<MeshFacts> =
             meshes.iter().zip(&ranges).map(|(mesh, range)| MeshFacts::new(mesh, range)).collect();
-        let (gpu_objects, sizes) = crate::objects::objects(objects, meshes, &facts, &ranges);
+        let (gpu_objects, sizes) = crate::objects::objects(objects, &facts, &ranges);
         let phases = Phases::new(&tables);
         let marks = Marks::new(&phases);
         let density_scales = density_scales(meshes, &ranges, tables.cage_point_count);
@@ -147,11 +149,12 @@ impl Surface {
         let lists = ListBuffers::new(device, &capacities, &phases, desc.method)?;
         times.upload = milliseconds(start);
         let sub_pixel_bits = device.limits().sub_pixel_bits;
-        let surface = Self {
+        let mut surface = Self {
             desc,
             tables,
             meshes: ranges,
             objects: gpu_objects,
+            object_meshes: objects.iter().map(|object| object.mesh).collect(),
             phases,
             buffers,
             frame,
@@ -174,14 +177,24 @@ impl Surface {
     /// Sets the positions of a cage's vertices, for all frames submitted from now on.
     ///
     /// # Panics
-    /// If there are more positions than cage vertices.
-    pub fn set_cage(&self, mesh: usize, positions: &[[f32; 3]]) -> Result<(), Error> {
-        let range = &self.meshes[mesh].cage_points;
-        assert!(positions.len() <= range.len(), "{} positions for {} vertices", positions.len(), range.len());
-        if !positions.is_empty() {
-            self.frame.cage.write(u64::from(range.start) * size_of::<[f32; 3]>() as u64, positions)?;
+    /// If there are not as many positions as cage vertices.
+    pub fn set_cage(&mut self, mesh: usize, positions: &[[f32; 3]]) -> Result<(), Error> {
+        let ranges = &self.meshes[mesh];
+        let range = &ranges.cage_points;
+        assert_eq!(positions.len(), range.len(), "positions of cage {mesh}");
+        if positions.is_empty() {
+            return Ok(());
         }
-        Ok(())
+        self.frame.cage.write(u64::from(range.start) * size_of::<[f32; 3]>() as u64, positions)?;
+        // Objects are culled by the boxes around their cages, which have moved along.
+        let neighbours = &self.tables.slots.neighbours;
+        let edges = (0..range.len() as u32)
+            .flat_map(|vertex| neighbours.of(ranges.slots.start + vertex).iter().map(move |&other| [vertex, other]));
+        let facts = CageFacts::new(positions, edges);
+        for (object, _) in self.objects.iter_mut().zip(&self.object_meshes).filter(|(_, of)| **of == mesh) {
+            facts.set(object);
+        }
+        Ok(self.frame.objects.write(0, &self.objects)?)
     }
 
     /// Sets the values of the hierarchical edits that set or move points, for all frames submitted from now on: only

@@ -265,7 +265,7 @@ fn uniform_points_and_limit_points_equal_their_twins_bit_for_bit() {
         let desc = SurfaceDesc { method: SurfaceMethod::Uniform, level: 3, ..SurfaceDesc::default() };
         let made = preprocess(&[&mesh], &desc).expect("tables");
         let objects = [ObjectDesc::identity(0)];
-        let surface = Surface::new(&lab.device, &[&mesh], &objects, desc, made).expect("upload");
+        let mut surface = Surface::new(&lab.device, &[&mesh], &objects, desc, made).expect("upload");
         let stages = FrameStages::new(&lab.device, &FrameNeeds::all(Spacing::Equal)).expect("pipelines");
         let mut encoder = Encoder::new(&lab.device, "points").expect("encoder");
         stages.record(&mut encoder, &surface);
