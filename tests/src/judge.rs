@@ -22,7 +22,7 @@ const STRIDES: [usize; 6] = [1, 3, 7, 13, 29, 61];
 
 /// Scenes in which parts of the surface lie on each other or have no extent, so that points that are not the same are at the
 /// same place; and holes of finer levels, which do not end at the sides of Ptex faces.
-const UNWELDABLE: [&str; 10] = [
+const UNWELDABLE: [&str; 11] = [
     "coincident_vertices",
     "collinear_face",
     "double_sided_quad",
@@ -31,6 +31,8 @@ const UNWELDABLE: [&str; 10] = [
     "edit_hole_2",
     "edit_hole_extraordinary",
     "edit_hole_ngon",
+    // So far from the origin floats are as far apart as the shortest segments are long.
+    "far_from_origin",
     "flat_pair",
     "zero_area_face",
 ];

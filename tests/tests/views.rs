@@ -7,7 +7,7 @@ use planish_tests::cage::Cage;
 use planish_tests::folder::temporary;
 use planish_tests::judge;
 use planish_tests::parallel::check_all;
-use planish_tests::repository::{is_about_rules, models, scenes, stem};
+use planish_tests::repository::{is_about_rules, models, scenes};
 use planish_tests::view::Place;
 
 /// Pixels an edge, with an image in which densities stay moderate; beside it a spacing.
@@ -39,9 +39,7 @@ fn cases() -> Vec<(PathBuf, Place, &'static str)> {
 fn dynamic_dumps_are_the_limit_surface_and_closed_from_odd_places() {
     check_all(&cases(), |(mesh, place, way)| {
         let flags = format!("{way} {}", place.flags(&Cage::read(mesh)));
-        // So far from the origin floats are as far apart as the shortest edges are long.
-        let is_coarse = stem(mesh) == "far_from_origin";
-        if is_coarse { judge::check_but_edges(mesh, &flags).map(drop) } else { judge::check(mesh, &flags) }
+        judge::check(mesh, &flags)
     });
 }
 
@@ -70,8 +68,6 @@ fn dumps_of_meshes_with_densities_are_the_limit_surface_and_closed() {
         let folder = temporary();
         let flags = format!("--tess 3 --spacing {spacing}");
         let mesh = write_dense(mesh, folder.path());
-        // Edges of length 0.003 as above.
-        let is_coarse = stem(&mesh) == "far_from_origin";
-        if is_coarse { judge::check_but_edges(&mesh, &flags).map(drop) } else { judge::check(&mesh, &flags) }
+        judge::check(&mesh, &flags)
     });
 }

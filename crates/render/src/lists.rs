@@ -71,12 +71,25 @@ pub struct Capacities {
     pub entries: [u32; 4],
     /// Draws of each kind: on a software driver there may be one an entry.
     pub draws: [u32; 4],
+    /// What they can hold at most; none if this is it. Pieces of cut patches have no bound.
+    worst: Option<Box<Capacities>>,
 }
 
 impl Capacities {
     /// For these objects; `largest` is the most entries that a list begins with.
     pub fn new(objects: &[ObjectDesc], meshes: &[MeshRanges], is_software: bool, largest: Option<u32>) -> Self {
         let largest = largest.unwrap_or(FIRST_CAPACITY);
+        let mut worst = Self::bounded(objects, meshes, is_software, u32::MAX / 4);
+        let mut capacities = Self::bounded(objects, meshes, is_software, largest);
+        for lists in [&mut worst, &mut capacities] {
+            lists.entries[PatchKind::Cut as usize] = largest;
+            lists.draws[PatchKind::Cut as usize] = if is_software { largest } else { 0 };
+        }
+        capacities.worst = Some(Box::new(worst));
+        capacities
+    }
+
+    fn bounded(objects: &[ObjectDesc], meshes: &[MeshRanges], is_software: bool, largest: u32) -> Self {
         let sum = |of: &dyn Fn(&MeshRanges) -> u64| objects.iter().map(|object| of(&meshes[object.mesh])).sum::<u64>();
         let worst = |of: &dyn Fn(&MeshRanges) -> u64| sum(of).min(u64::from(largest)) as u32;
         let chunks = |count: usize| count.div_ceil(CHUNK as usize) as u64;
@@ -89,7 +102,7 @@ impl Capacities {
         ];
         let patches = worst(&|mesh| all(&mesh.patches));
         let leaves = worst(&|mesh| all(&mesh.irregular));
-        let entries = [patches, patches, leaves, largest];
+        let entries = [patches, patches, leaves, 0];
         Self {
             chunks: chunk_counts.map(|of| sum(of) as u32),
             active: std::array::from_fn(|level| {
@@ -98,12 +111,25 @@ impl Capacities {
             items: [worst(&|mesh| all(&mesh.patches[1..])), leaves, patches.min(1 << 12).min(largest)],
             entries,
             draws: entries.map(|count| if is_software { count } else { 0 }),
+            worst: None,
         }
     }
 
     /// With room for all that a frame asked for; none if all fitted.
+    ///
+    /// What faces that did not fit would have become is not known, so then all lists get room for the worst case. Cut patches that
+    /// did not fit have pieces that the next frame counts.
     pub fn grown(&self, status: &Status) -> Option<Self> {
+        let has_lost_faces = (1..LEVEL_COUNT).any(|level| status.heads[LIST_ACTIVE + level].count > self.active[level])
+            || status.heads[LIST_PATCHES].count > self.items[0]
+            || status.heads[LIST_LEAVES].count > self.items[1];
         let mut grown = self.clone();
+        if let Some(worst) = self.worst.as_ref().filter(|_| has_lost_faces) {
+            let (entries, draws) = (self.entries[PatchKind::Cut as usize], self.draws[PatchKind::Cut as usize]);
+            grown = Self { worst: self.worst.clone(), ..(**worst).clone() };
+            grown.entries[PatchKind::Cut as usize] = entries;
+            grown.draws[PatchKind::Cut as usize] = draws;
+        }
         let grow = |capacity: &mut u32, needed: u32| {
             if needed > *capacity {
                 // Half as much again: the next frame may ask for a little more.
