@@ -23,16 +23,16 @@ layout(location = 8) patch out uvec4 piece_last;
 
 void main()
 {
-    DrawEntry entry = push.list.v[list_place[0]];
-    uint patch_place = entry.place;
+    uint patch_place = push.list.v[list_place[0]].place;
     PatchInfo info = push.patches.v[patch_place].info;
     SceneTables scene = push.frame.v.scene;
-    Object object = scene.v.objects.v[entry.object];
+    Object object = scene.v.objects.v[push.list.v[list_place[0]].object];
     control_point[gl_InvocationID] = to_world(
         object, control_point_of(push.patches, push.points, patch_place, gl_InvocationID, patch_boundary(info)));
     if (gl_InvocationID != 0) {
         return;
     }
+    DrawEntry entry = push.list.v[list_place[0]];
     uint flags = entry.flags;
     patch_sharpness = CREASE ? push.patches.v[patch_place].sharpness : 0.0;
     PatchFactors factors = entry_factors(entry);

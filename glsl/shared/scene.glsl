@@ -199,8 +199,14 @@ uint list_length(ListHeads heads, uint list)
     return min(heads.v[list].count, heads.v[list].capacity);
 }
 
+// Whether any object stands elsewhere than its mesh: without it no transform is fetched, or applied.
+layout(constant_id = 4) const bool PLACED = true;
+
 vec3 to_world(Object object, vec3 p)
 {
+    if (!PLACED) {
+        return p;
+    }
     // Columns times coordinates, in this order everywhere.
     precise vec3 result = ((object.to_world[0] * p.x + object.to_world[1] * p.y) + object.to_world[2] * p.z) + object.to_world[3];
     return result;
@@ -209,6 +215,9 @@ vec3 to_world(Object object, vec3 p)
 // A unit normal under the transform: across the transformed plane. Mirrored ones are turned over, as crossed tangents are.
 vec3 normal_to_world(Object object, vec3 n)
 {
+    if (!PLACED) {
+        return n;
+    }
     precise vec3 x = precise_cross(object.to_world[1], object.to_world[2]);
     precise vec3 y = precise_cross(object.to_world[2], object.to_world[0]);
     precise vec3 z = precise_cross(object.to_world[0], object.to_world[1]);

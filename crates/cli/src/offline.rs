@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
-use glam::{Mat4, Vec3};
+use glam::{Affine3A, Mat4, Vec3};
 use planish_gpu::{Calls, Device, Encoder, Recorded, SubmitReport};
 use planish_render::density::{MAX_UNCUT_DENSITY, isolation_level, largest_density};
 use planish_render::{
@@ -96,12 +96,13 @@ impl Plan {
             density = density.max(largest_density(&cage.meshes(), &seen, &frame_camera, &setting.options)?);
         }
         let level = isolation_level(density, setting.max_level);
+        let placed = objects.iter().any(|object| object.to_world != Affine3A::IDENTITY);
         Ok(Self {
             camera: cameras[0].clone(),
             frame_camera: frame_camera(&cameras[0], setting.size),
             objects,
             desc: SurfaceDesc { method: setting.method, level, crease_patches: setting.crease_patches },
-            needs: frame_needs(setting.spacing, density),
+            needs: FrameNeeds { placed, ..frame_needs(setting.spacing, density) },
             options: setting.options,
         })
     }
@@ -121,7 +122,7 @@ impl Plan {
 
 /// What frames of about this density need; nothing is culled. Twice as dense a frame, of a cage that moves, has all it needs.
 pub fn frame_needs(spacing: Spacing, density: f32) -> FrameNeeds {
-    FrameNeeds { spacing, culls: false, cuts: 2.0 * density > MAX_UNCUT_DENSITY }
+    FrameNeeds { spacing, culls: false, placed: true, cuts: 2.0 * density > MAX_UNCUT_DENSITY }
 }
 
 /// How a method selects; nothing is culled.

@@ -57,6 +57,7 @@ impl DrawPasses {
             cull_back: options.cull_back,
             wire: false,
             creases: surface.has_creased_patches(),
+            placed: needs.placed,
             cuts: needs.cuts,
         };
         let wire = PipelineOptions { wire: true, ..fill };

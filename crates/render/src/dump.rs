@@ -65,6 +65,7 @@ impl DumpPasses {
             cull_back: false,
             wire: false,
             creases: surface.has_creased_patches(),
+            placed: needs.placed,
             cuts: needs.cuts,
         };
         let buffer = |name, kind, size| Buffer::new(device, &BufferDesc { name, kind, size });

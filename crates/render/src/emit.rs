@@ -41,6 +41,7 @@ impl Emit {
         let spec = [
             SpecConstant { id: shaders::emit_patches_comp::SPEC_SPACING, bits: needs.spacing.constant() },
             SpecConstant { id: shaders::emit_patches_comp::SPEC_BATCH_VERTICES, bits: batch },
+            SpecConstant { id: shaders::emit_patches_comp::SPEC_PLACED, bits: u32::from(needs.placed) },
             SpecConstant { id: shaders::emit_patches_comp::SPEC_CULL, bits: u32::from(needs.culls) },
         ];
         let pipeline = |module| specialized_compute_pipeline(device, module, GROUP, &spec);

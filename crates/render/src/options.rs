@@ -79,6 +79,8 @@ pub struct FrameNeeds {
     pub spacing: Spacing,
     /// Some are culled.
     pub culls: bool,
+    /// Some objects stand elsewhere than their mesh.
+    pub placed: bool,
     /// Some have densities above [`crate::density::MAX_UNCUT_DENSITY`].
     pub cuts: bool,
 }
@@ -86,7 +88,7 @@ pub struct FrameNeeds {
 impl FrameNeeds {
     /// All.
     pub fn all(spacing: Spacing) -> Self {
-        Self { spacing, culls: true, cuts: true }
+        Self { spacing, culls: true, placed: true, cuts: true }
     }
 }
 

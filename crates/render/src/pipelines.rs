@@ -34,6 +34,8 @@ pub(crate) struct PipelineOptions {
     pub wire: bool,
     /// Some regular patches have a semi-sharp crease.
     pub creases: bool,
+    /// Some objects stand elsewhere than their mesh.
+    pub placed: bool,
     /// Some patches are cut.
     pub cuts: bool,
 }
@@ -52,13 +54,14 @@ pub(crate) fn pipelines(
 }
 
 fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Result<GraphicsPipeline, Error> {
-    let bspline_constants = [
+    let patch_constants = [
         SpecConstant { id: shaders::bspline_patch_tesc::SPEC_SPACING, bits: options.spacing.constant() },
         SpecConstant {
             id: shaders::bspline_patch_lean_tese::SPEC_TRANSITION,
             bits: u32::from(matches!(kind, PatchKind::Transition | PatchKind::Cut)),
         },
         SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_CREASE, bits: u32::from(options.creases) },
+        SpecConstant { id: shaders::bspline_patch_tesc::SPEC_PLACED, bits: u32::from(options.placed) },
         SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_CUT, bits: u32::from(kind == PatchKind::Cut) },
     ];
     let view_constant = [SpecConstant { id: shaders::surface_lean_frag::SPEC_VIEW, bits: options.view.constant() }];
@@ -67,8 +70,8 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
         .iter()
         .map(|module| {
             let knows = |constant: &&SpecConstant| module.spec_constants.iter().any(|known| known.id == constant.id);
-            let is_bspline = module.name.starts_with("bspline_patch");
-            bspline_constants.iter().filter(|_| is_bspline).filter(knows).copied().collect()
+            let is_patch = module.name.starts_with("bspline_patch") || module.name.starts_with("filling_quad");
+            patch_constants.iter().filter(|_| is_patch).filter(knows).copied().collect()
         })
         .collect();
     let mut stages: Vec<_> = geometry.iter().zip(&used).map(|(module, used)| stage(module, used)).collect();
