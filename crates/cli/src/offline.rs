@@ -96,13 +96,13 @@ impl Plan {
             density = density.max(largest_density(&cage.meshes(), &seen, &frame_camera, &setting.options)?);
         }
         let level = isolation_level(density, setting.max_level);
-        let placed = objects.iter().any(|object| object.to_world != Affine3A::IDENTITY);
+        let needs = frame_needs(setting.spacing, density, &objects);
         Ok(Self {
             camera: cameras[0].clone(),
             frame_camera: frame_camera(&cameras[0], setting.size),
             objects,
             desc: SurfaceDesc { method: setting.method, level, crease_patches: setting.crease_patches },
-            needs: FrameNeeds { placed, ..frame_needs(setting.spacing, density) },
+            needs,
             options: setting.options,
         })
     }
@@ -121,8 +121,9 @@ impl Plan {
 }
 
 /// What frames of about this density need; nothing is culled. Twice as dense a frame, of a cage that moves, has all it needs.
-pub fn frame_needs(spacing: Spacing, density: f32) -> FrameNeeds {
-    FrameNeeds { spacing, culls: false, placed: true, cuts: 2.0 * density > MAX_UNCUT_DENSITY }
+pub fn frame_needs(spacing: Spacing, density: f32, objects: &[ObjectDesc]) -> FrameNeeds {
+    let placed = objects.iter().any(|object| object.to_world != Affine3A::IDENTITY);
+    FrameNeeds { spacing, culls: false, placed, cuts: 2.0 * density > MAX_UNCUT_DENSITY }
 }
 
 /// How a method selects; nothing is culled.
@@ -179,6 +180,9 @@ impl Session {
     /// Builds the scene's tables and uploads them.
     pub fn new(device: &Device, cage: &Cage, plan: &Plan, console: &Console) -> Result<Self> {
         let named = || cage.path().display().to_string();
+        if plan.desc.method == SurfaceMethod::Uniform && (plan.objects.len() != 1 || plan.needs.placed) {
+            bail!("{}: method uniform draws one mesh where it is: expected no instances", named());
+        }
         let made = preprocess(&cage.meshes(), &plan.desc).with_context(named)?;
         let surface = Surface::new(device, &cage.meshes(), &plan.objects, plan.desc, made).with_context(named)?;
         let start = Instant::now();

@@ -12,7 +12,7 @@ use planish_subdiv::topology::NONE;
 use crate::camera::FrameCamera;
 use crate::error::Error;
 use crate::factors::{Grain, PatchFactors, triangle_count};
-use crate::lists::{LIST_BASE, LIST_CUT, LIST_LEAVES, LIST_PATCHES, PatchKind};
+use crate::lists::{CHUNK, LIST_BASE, LIST_CUT, LIST_LEAVES, LIST_PATCHES, PatchKind};
 use crate::objects::to_world;
 use crate::options::{Culling, FrameNeeds, Spacing};
 use crate::program::{compute_pipeline, specialized_compute_pipeline};
@@ -24,7 +24,6 @@ use crate::visibility::{bezier_part, bezier_patch, is_patch_unseen, is_quad_unse
 /// Vertices that a draw should generate on a software driver: on Mesa 22.3's, larger batches cost more by their square,
 /// smaller ones by their number (`planish bench --tess`).
 const BATCH_VERTICES: u32 = 512;
-const GROUP: u32 = 64;
 
 /// The stage's programs.
 pub(crate) struct Emit {
@@ -44,7 +43,7 @@ impl Emit {
             SpecConstant { id: shaders::emit_patches_comp::SPEC_PLACED, bits: u32::from(needs.placed) },
             SpecConstant { id: shaders::emit_patches_comp::SPEC_CULL, bits: u32::from(needs.culls) },
         ];
-        let pipeline = |module| specialized_compute_pipeline(device, module, GROUP, &spec);
+        let pipeline = |module| specialized_compute_pipeline(device, module, CHUNK, &spec);
         Ok(Self {
             patches: pipeline(&shaders::emit_patches_comp::PROGRAM)?,
             leaves: pipeline(&shaders::emit_leaves_comp::PROGRAM)?,
@@ -65,7 +64,7 @@ impl Emit {
             encoder.compute_indirect(cut, &push(LIST_CUT), heads, head_offset(LIST_CUT));
         }
         let push = shaders::finish_lists_comp::Push { heads: address(&surface.lists.draw_heads) };
-        encoder.compute(&self.finish, &push, GROUP);
+        encoder.compute(&self.finish, &push, CHUNK);
         encoder.timestamp("emit");
     }
 }

@@ -1,9 +1,8 @@
 //! What is measured of a frame: medians of frames in each of which the cage has moved.
 
 use anyhow::Result;
-use glam::Affine3A;
 use planish_gpu::Device;
-use planish_render::{Density, FrameNeeds, SurfaceDesc, SurfaceMethod, View};
+use planish_render::{Density, SurfaceDesc, SurfaceMethod, View};
 use planish_subdiv::refine::CreasePatches;
 use serde::Serialize;
 
@@ -45,13 +44,12 @@ pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) ->
     let camera = cage.default_view()?;
     let Setting { method, level, tess_factor, crease_patches } = setting;
     let objects = cage.objects(&camera);
-    let placed = objects.iter().any(|object| object.to_world != Affine3A::IDENTITY);
     let mut plan = Plan {
         frame_camera: frame_camera(&camera, arguments.size),
+        needs: frame_needs(arguments.spacing.into(), tess_factor, &objects),
         objects,
         camera,
         desc: SurfaceDesc { method, level, crease_patches },
-        needs: FrameNeeds { placed, ..frame_needs(arguments.spacing.into(), tess_factor) },
         options: frame_options(method, Density::Tess(tess_factor), false),
     };
     plan.cull(arguments.no_cull);
