@@ -20,6 +20,7 @@ layout(location = 5) patch out float patch_sharpness; // of the semi-sharp creas
 layout(location = 6) patch out uvec3 piece_place;
 layout(location = 7) patch out uvec4 piece_first;
 layout(location = 8) patch out uvec4 piece_last;
+layout(location = 9) patch out uvec2 patch_places; // of its seams, or NONE; of its object
 
 void main()
 {
@@ -38,6 +39,7 @@ void main()
     PatchFactors factors = entry_factors(entry);
     patch_words = uvec4(object.first_face + info.ptex_face, info.corner, info.flags | entry_split_edges(flags) << 14,
                         (push.first_patch_id + patch_place) | ((object.flags & OBJECT_MIRRORED) != 0u ? PATCH_MIRRORED : 0u));
+    patch_places = uvec2(push.patches.v[patch_place].seams, entry.object);
     low_factors = factors.low;
     high_factors = factors.high;
     uvec4 counts = uvec4(factors.counts);

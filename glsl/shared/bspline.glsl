@@ -31,6 +31,20 @@ precise vec3 weigh(vec3 p0, vec3 p1, vec3 p2, vec3 p3, vec4 w)
     return sum;
 }
 
+// Sum of 16 points, row by row, weighted by products of weights along u and v. The order of the sum is one that no turn and
+// no reflection of the patch changes, nor the step to the next patch across an edge: there one row of weights is 0, and what
+// is left is added as the neighbour does. So all patches at an edge or a corner get the same bits (FAS section 5.2).
+precise vec3 weigh_patch(vec3 p[16], vec4 nu, vec4 nv)
+{
+    // Points whose rows, and columns, are an even number apart: four at a time.
+    precise vec3 even_even = (p[0] * (nu.x * nv.x) + p[10] * (nu.z * nv.z)) + (p[2] * (nu.z * nv.x) + p[8] * (nu.x * nv.z));
+    precise vec3 odd_even = (p[3] * (nu.w * nv.x) + p[9] * (nu.y * nv.z)) + (p[1] * (nu.y * nv.x) + p[11] * (nu.w * nv.z));
+    precise vec3 even_odd = (p[12] * (nu.x * nv.w) + p[6] * (nu.z * nv.y)) + (p[14] * (nu.z * nv.w) + p[4] * (nu.x * nv.y));
+    precise vec3 odd_odd = (p[15] * (nu.w * nv.w) + p[5] * (nu.y * nv.y)) + (p[13] * (nu.y * nv.w) + p[7] * (nu.w * nv.y));
+    precise vec3 sum = (even_even + odd_odd) + (odd_even + even_odd);
+    return sum;
+}
+
 // Cross product whose operations are all kept as written.
 precise vec3 precise_cross(vec3 a, vec3 b)
 {

@@ -161,6 +161,7 @@ struct SceneData {
     Points points;
     LimitPoints limits;
     RegularPatches patches;
+    SeamTable seams;
     IrregularFaces irregular;
     PtexFaces ptex_faces;
     Indices neighbour_first; // slot to its first in `neighbours`

@@ -36,6 +36,14 @@ struct RegularPatch {
     PatchInfo info;
     float sharpness;
     uint edges[4];
+    uint seams; // place of its PatchSeams; NONE if it takes nothing from other patches
+};
+
+// What a patch takes from others, so that they agree to the bit: the limit points that its corners are, and the coarser
+// patches that its edges are halves of edges of; NONE for none.
+struct PatchSeams {
+    uint limits[4];
+    uint borders[4]; // bit 0: the edges run against each other, 1: the half, 2-3: the edge, 4-31: the coarser patch
 };
 
 // A child of an irregular face is one itself if this bit is set, else a regular patch.
@@ -79,6 +87,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Edi
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Weights { float v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer LimitWeights { vec3 v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RegularPatches { RegularPatch v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SeamTable { PatchSeams v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer IrregularFaces { IrregularFace v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FillingQuads { FillingQuad v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer PtexFaces { uvec4 v[]; };

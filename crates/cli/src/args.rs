@@ -167,6 +167,9 @@ pub struct BenchArguments {
     /// Spacing of tessellated points
     #[arg(long, value_enum, default_value_t = SpacingName::Equal)]
     pub spacing: SpacingName,
+    /// Trade bitwise equal seams for speed
+    #[arg(long)]
+    pub no_watertight: bool,
     /// Draw what culling would leave out
     #[arg(long)]
     pub no_cull: bool,

@@ -28,6 +28,8 @@ pub struct PlanSetting {
     pub spacing: Spacing,
     /// Size of the image in pixels.
     pub size: [u32; 2],
+    /// Seams have the same bits on both sides.
+    pub watertight: bool,
     pub options: FrameOptions,
 }
 
@@ -79,6 +81,7 @@ impl Plan {
             crease_patches: surface.crease_patches.into(),
             spacing: surface.spacing.into(),
             size: view.size,
+            watertight: !surface.no_watertight,
             options,
         };
         Self::of(cage, &setting, cameras)
@@ -96,7 +99,7 @@ impl Plan {
             density = density.max(largest_density(&cage.meshes(), &seen, &frame_camera, &setting.options)?);
         }
         let level = isolation_level(density, setting.max_level);
-        let needs = frame_needs(setting.spacing, density, &objects);
+        let needs = FrameNeeds { watertight: setting.watertight, ..frame_needs(setting.spacing, density, &objects) };
         Ok(Self {
             camera: cameras[0].clone(),
             frame_camera: frame_camera(&cameras[0], setting.size),
@@ -120,10 +123,10 @@ impl Plan {
     }
 }
 
-/// What frames of about this density need; nothing is culled. Twice as dense a frame, of a cage that moves, has all it needs.
+/// What frames of about this density need; nothing is culled, and seams are watertight. Twice as dense a frame, of a cage that moves, has all it needs.
 pub fn frame_needs(spacing: Spacing, density: f32, objects: &[ObjectDesc]) -> FrameNeeds {
     let placed = objects.iter().any(|object| object.to_world != Affine3A::IDENTITY);
-    FrameNeeds { spacing, culls: false, placed, cuts: 2.0 * density > MAX_UNCUT_DENSITY }
+    FrameNeeds { spacing, culls: false, placed, cuts: 2.0 * density > MAX_UNCUT_DENSITY, watertight: true }
 }
 
 /// How a method selects; nothing is culled.

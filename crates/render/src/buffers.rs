@@ -4,7 +4,8 @@ use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, DrawArguments, Encoder
 use planish_shaders as shaders;
 use planish_shaders::{DrawEntry, DrawHead, FrameCounts, FrameData, FrameInput, ListHead, ListItem, Object, SceneData};
 use planish_subdiv::patch::{FillingQuad, PatchInfo, RegularPatch};
-use planish_subdiv::tables::{IndexLists, IrregularFace, Tables};
+use planish_subdiv::tables::{Border, IndexLists, IrregularFace, PatchSeams, Tables};
+use planish_subdiv::topology::NONE;
 
 use crate::edit_points::targets;
 use crate::error::Error;
@@ -24,6 +25,7 @@ pub(crate) struct TableBuffers {
     pub limit_indices: Buffer,
     pub limit_weights: Buffer,
     pub patches: Buffer,
+    pub seams: Buffer,
     pub irregular: Buffer,
     pub quads: Buffer,
     pub ptex_faces: Buffer,
@@ -47,6 +49,7 @@ impl TableBuffers {
             limit_indices: table(device, "limit indices", &limits.indices)?,
             limit_weights: table(device, "limit weights", &limits.weights)?,
             patches: table(device, "patches", &tables.patches.iter().map(patch).collect::<Vec<_>>())?,
+            seams: table(device, "seams", &tables.seams.iter().map(seams).collect::<Vec<_>>())?,
             irregular: table(device, "irregular faces", &tables.irregular.iter().map(irregular).collect::<Vec<_>>())?,
             quads: table(device, "filling quads", &tables.filling.iter().map(quad).collect::<Vec<_>>())?,
             ptex_faces: table(device, "Ptex faces", &tables.ptex_faces)?,
@@ -68,6 +71,7 @@ impl TableBuffers {
             &self.limit_indices,
             &self.limit_weights,
             &self.patches,
+            &self.seams,
             &self.irregular,
             &self.quads,
             &self.ptex_faces,
@@ -252,7 +256,17 @@ fn info(info: &PatchInfo) -> shaders::PatchInfo {
 }
 
 fn patch(p: &RegularPatch) -> shaders::RegularPatch {
-    shaders::RegularPatch { points: p.points, info: info(&p.info), sharpness: p.sharpness, edges: p.edges }
+    shaders::RegularPatch {
+        points: p.points,
+        info: info(&p.info),
+        sharpness: p.sharpness,
+        edges: p.edges,
+        seams: p.seams,
+    }
+}
+
+fn seams(seams: &PatchSeams) -> shaders::PatchSeams {
+    shaders::PatchSeams { limits: seams.limits, borders: seams.borders.map(|border| border.map_or(NONE, Border::pack)) }
 }
 
 fn irregular(face: &IrregularFace) -> shaders::IrregularFace {

@@ -59,6 +59,7 @@ impl DrawPasses {
             creases: surface.has_creased_patches(),
             placed: needs.placed,
             cuts: needs.cuts,
+            watertight: needs.watertight,
         };
         let wire = PipelineOptions { wire: true, ..fill };
         Ok(Self {

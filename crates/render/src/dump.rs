@@ -67,6 +67,7 @@ impl DumpPasses {
             creases: surface.has_creased_patches(),
             placed: needs.placed,
             cuts: needs.cuts,
+            watertight: needs.watertight,
         };
         let buffer = |name, kind, size| Buffer::new(device, &BufferDesc { name, kind, size });
         Ok(Self {

@@ -27,7 +27,7 @@ impl FrameStages {
     /// Makes the pipelines.
     pub fn new(device: &Device, needs: &FrameNeeds) -> Result<Self, Error> {
         Ok(Self {
-            select: Select::new(device)?,
+            select: Select::new(device, needs)?,
             subdivide: Subdivide::new(device)?,
             limit: Limit::new(device)?,
             emit: Emit::new(device, needs)?,

@@ -83,12 +83,15 @@ pub struct FrameNeeds {
     pub placed: bool,
     /// Some have densities above [`crate::density::MAX_UNCUT_DENSITY`].
     pub cuts: bool,
+    /// Along every seam positions have the same bits on both sides, and normals where the surface is smooth; else each patch is
+    /// evaluated by itself, in fewer operations.
+    pub watertight: bool,
 }
 
 impl FrameNeeds {
     /// All.
     pub fn all(spacing: Spacing) -> Self {
-        Self { spacing, culls: true, placed: true, cuts: true }
+        Self { spacing, culls: true, placed: true, cuts: true, watertight: true }
     }
 }
 

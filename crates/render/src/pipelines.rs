@@ -38,6 +38,8 @@ pub(crate) struct PipelineOptions {
     pub placed: bool,
     /// Some patches are cut.
     pub cuts: bool,
+    /// Seams have the same bits on both sides.
+    pub watertight: bool,
 }
 
 /// The pipeline of each kind of patch that the method has.
@@ -62,6 +64,7 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
         },
         SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_CREASE, bits: u32::from(options.creases) },
         SpecConstant { id: shaders::bspline_patch_tesc::SPEC_PLACED, bits: u32::from(options.placed) },
+        SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_WATERTIGHT, bits: u32::from(options.watertight) },
         SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_CUT, bits: u32::from(kind == PatchKind::Cut) },
     ];
     let view_constant = [SpecConstant { id: shaders::surface_lean_frag::SPEC_VIEW, bits: options.view.constant() }];

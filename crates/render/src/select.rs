@@ -1,13 +1,14 @@
 //! The stages before subdivision: what may be seen (`glsl/objects.comp`), how dense it is (`density.comp`,
 //! `density_rings.comp`), which irregular faces are refined (`select.comp`, level by level), what their leaves need
-//! (`leaves.comp`), and lists of the rows that are in use (`compact.comp`). CPU twins: [`crate::density::density`] and
+//! (`leaves.comp`) and what the corners of patches are (`corners.comp`), and lists of the rows that are in use (`compact.comp`). CPU twins: [`crate::density::density`] and
 //! [`planish_subdiv::selection`].
 
 use planish_gpu::{ComputePipeline, Device, Encoder, Transfer};
 use planish_shaders as shaders;
 
 use crate::error::Error;
-use crate::lists::{CHUNK, LIST_ACTIVE, LIST_LEAVES, LIST_MIDDLES, LIST_ROOTS, LIST_VERTICES};
+use crate::options::FrameNeeds;
+use crate::lists::{CHUNK, LIST_ACTIVE, LIST_BASE, LIST_LEAVES, LIST_PATCHES, LIST_MIDDLES, LIST_ROOTS, LIST_VERTICES};
 use crate::program::compute_pipeline;
 use crate::surface::Surface;
 use crate::upload::address;
@@ -21,6 +22,7 @@ pub(crate) struct Select {
     around: ComputePipeline,
     select: ComputePipeline,
     leaves: ComputePipeline,
+    corners: Option<ComputePipeline>,
     compact: ComputePipeline,
 }
 
@@ -30,7 +32,7 @@ pub(crate) fn head_offset(list: usize) -> u64 {
 }
 
 impl Select {
-    pub fn new(device: &Device) -> Result<Self, Error> {
+    pub fn new(device: &Device, needs: &FrameNeeds) -> Result<Self, Error> {
         let pipeline = |module| compute_pipeline(device, module);
         Ok(Self {
             objects: pipeline(&shaders::objects_comp::PROGRAM)?,
@@ -40,6 +42,7 @@ impl Select {
             around: pipeline(&shaders::density_rings_around_comp::PROGRAM)?,
             select: pipeline(&shaders::select_comp::PROGRAM)?,
             leaves: pipeline(&shaders::leaves_comp::PROGRAM)?,
+            corners: needs.watertight.then(|| pipeline(&shaders::corners_comp::PROGRAM)).transpose()?,
             compact: pipeline(&shaders::compact_comp::PROGRAM)?,
         })
     }
@@ -60,7 +63,8 @@ impl Select {
         ]);
     }
 
-    /// Records the stages: a dispatch a level, level 0 too, and five; seven where there are n-gons. Takes the times `density` and `select`.
+    /// Records the stages: a dispatch a level, level 0 too, and seven; two more where there are n-gons, two fewer where
+    /// seams need not have the same bits. Takes the times `density` and `select`.
     pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
         let scene = address(&surface.frame.scene);
         let heads = &surface.lists.heads;
@@ -85,6 +89,12 @@ impl Select {
         }
         let push = shaders::leaves_comp::Push { scene };
         encoder.compute_indirect(&self.leaves, &push, heads, head_offset(LIST_LEAVES));
+        if let Some(corners) = &self.corners {
+            for list in [LIST_BASE, LIST_PATCHES] {
+                let push = shaders::CornersPush { scene, list: list as u32, ..shaders::CornersPush::default() };
+                encoder.compute_indirect_more(corners, &push, heads, head_offset(list));
+            }
+        }
         let word_count = surface.frame.marks.size() as u32 / 4;
         encoder.compute(&self.compact, &shaders::compact_comp::Push { scene }, word_count);
         encoder.timestamp("select");

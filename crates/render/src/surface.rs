@@ -241,6 +241,7 @@ impl Surface {
             points: address(&frame.points),
             limits: address(&frame.limits),
             patches: address(&tables.patches),
+            seams: address(&tables.seams),
             irregular: address(&tables.irregular),
             ptex_faces: address(&tables.ptex_faces),
             neighbour_first: address(&tables.neighbours[0]),

@@ -73,6 +73,8 @@ pub struct RegularPatch {
     /// Number of each edge that the face across may split, among the split edges of [`crate::tables::Tables`]; else
     /// [`NONE`].
     pub edges: [u32; 4],
+    /// Its place among [`crate::tables::Tables::seams`], or [`NONE`] if it takes nothing from other patches.
+    pub seams: u32,
 }
 
 /// A face of uniform refinement's last level, drawn between limit points.

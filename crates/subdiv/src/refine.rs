@@ -12,6 +12,7 @@ use crate::error::Error;
 use crate::mesh::{ControlMesh, Creasing, HierarchicalEdit, INFINITE_SHARPNESS, MAX_ELEMENTS};
 use crate::rules;
 use crate::sharpness::{SharpnessAtVertex, child_sharpness};
+use crate::tables::Border;
 use crate::topology::{Level, Location, NONE, NonManifold, VertexTag};
 
 /// Deepest level: locations have 16 bits, and single precision points carry no more.
@@ -142,6 +143,11 @@ impl Refinement {
         let count = refinement.splits.iter().map(|split| split.point_count() as u64).sum::<u64>();
         if 8 * count >= u64::from(u32::MAX) {
             return Err(Error::TooLarge { level: last_level, count: 8 * count });
+        }
+        // What borders of patches can name.
+        let faces = refinement.levels.iter().map(|level| u64::from(level.drawn_count)).sum::<u64>();
+        if faces >= Border::MAX_PATCHES {
+            return Err(Error::TooLarge { level: last_level, count: faces });
         }
         Ok(refinement)
     }

@@ -107,6 +107,7 @@ impl Method {
             crease_patches: CreasePatches::default(),
             spacing: arguments.spacing.into(),
             size: arguments.size,
+            watertight: !arguments.no_watertight,
             options: frame_options(method, Density::EdgePixels(arguments.edge_pixels), false),
         };
         let mut plan = Plan::of(cage, &setting, cameras)?;

@@ -4,6 +4,7 @@ use crate::patch::{PatchInfo, RegularPatch, control_points};
 use crate::refine::{CreasePatches, Refinement, child_half_edge};
 use crate::tables::Tables;
 use crate::tables::limits::{LimitPoints, children};
+use crate::tables::seams::{PatchSeams, SharedCorners, borders};
 use crate::tables::stars::StarPoints;
 use crate::topology::{Level, Location, NONE};
 
@@ -63,7 +64,7 @@ pub(super) fn add_faces(tables: &mut Tables, refinement: &Refinement) {
     for (k, faces) in levels.iter().enumerate() {
         let edges = faces.number_edges(&mut tables.edge_count);
         let above = k.checked_sub(1).map(|above| (&levels[above], refinement.splits[above].child_corners.as_slice()));
-        faces.add_patches(tables, refinement, &edges, above);
+        faces.add_patches(tables, refinement, &edges, above, &mut limits);
         faces.add_irregular(tables, refinement, &edges, levels.get(k + 1), &mut limits);
     }
     tables.limits = table;
@@ -151,8 +152,11 @@ impl<'a> LevelFaces<'a> {
         refinement: &Refinement,
         edges: &[u32],
         above: Option<(&LevelFaces, &[u32])>,
+        limits: &mut LimitPoints,
     ) {
         let level = self.level;
+        let (patches_above, places_above) = above.map(|(above, _)| above.patch_places()).unwrap_or_default();
+        let mut shared = SharedCorners::new(refinement, self.k, &self.is_irregular, &patches_above);
         let first_point = tables.levels[self.k as usize].points.start;
         for face in (0..level.drawn_count).filter(|&face| level.is_drawn(face) && !self.is_irregular[face as usize]) {
             let (points, boundary) = control_points(level, face);
@@ -171,8 +175,27 @@ impl<'a> LevelFaces<'a> {
                 crease,
             };
             let edges = four(|i| edges[(level.half_edges(face).start + i) as usize]);
-            tables.patches.push(RegularPatch { points: points.map(|v| first_point + v), info, sharpness, edges });
+            let first = level.half_edges(face).start;
+            let mut seams = PatchSeams::NOTHING;
+            if let Some((above, corners)) = above {
+                let corner = corners[face as usize];
+                let own = [0, 3].map(|j| child_half_edge(0, above.level, corner, j));
+                seams.borders = borders(above.level, &places_above, corner, own);
+            }
+            seams.limits =
+                four(|i| if shared.is_limit(first + i) { limits.point(self.k, first + i) } else { NONE });
+            let place = if seams == PatchSeams::NOTHING { NONE } else { tables.seams.len() as u32 };
+            tables.seams.extend((place != NONE).then_some(seams));
+            let points = points.map(|v| first_point + v);
+            tables.patches.push(RegularPatch { points, info, sharpness, edges, seams: place });
         }
+    }
+
+    /// Which faces are patches, and their places; [`NONE`] for the others.
+    fn patch_places(&self) -> (Vec<bool>, Vec<u32>) {
+        let place = |&place: &u32| if place & IrregularFace::IRREGULAR == 0 { place } else { NONE };
+        let places: Vec<u32> = self.places.iter().map(place).collect();
+        (places.iter().map(|&place| place != NONE).collect(), places)
     }
 
     /// The edges of the child at a corner that are halves of edges of this level's ends of refinement, one bit each.

@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::mesh::MAX_ELEMENTS;
 use crate::patch::{FillingQuad, RegularPatch};
 use crate::stencil::StencilRow;
-use crate::tables::{IrregularFace, LevelPoints, Tables};
+use crate::tables::{Border, IrregularFace, LevelPoints, PatchSeams, Tables};
 use crate::topology::NONE;
 
 /// Where a mesh lies in tables.
@@ -76,6 +76,10 @@ impl Tables {
         let count = parts.iter().map(Self::largest_index).sum::<u64>();
         if count >= u64::from(MAX_ELEMENTS) {
             return Err(Error::TooLarge { level: last_level, count });
+        }
+        let patches = parts.iter().map(|part| part.patches.len() as u64).sum::<u64>();
+        if patches >= Border::MAX_PATCHES {
+            return Err(Error::TooLarge { level: last_level, count: patches });
         }
         let mut merged = Self { max_level: parts[0].max_level, last_level, ..Self::default() };
         let mut meshes = vec![MeshRanges::default(); parts.len()];
@@ -207,7 +211,26 @@ impl Tables {
         let edges = |edges: [u32; 4]| edges.map(|edge| moved(edge, mesh.edges.start));
         let limits = |limits: [u32; 4]| limits.map(|limit| moved(limit, mesh.limits.start));
         let range = |ranges: &[Range<u32>], k: usize| ranges.get(k).cloned().unwrap_or_default();
-        self.patches.extend(part.patches[to_usize(range(&part.patch_ranges, k))].iter().map(|patch| RegularPatch {
+        let patch_shift = |k: usize| range(&mesh.patches, k).start.wrapping_sub(range(&part.patch_ranges, k).start);
+        let own = &part.patches[to_usize(range(&part.patch_ranges, k))];
+        let seams = own.iter().filter(|patch| patch.seams != NONE).map(|patch| part.seams[patch.seams as usize]);
+        // The patches of a level name their seams in order.
+        let mut next_seams = self.seams.len() as u32;
+        // Coarser patches are those of the level before.
+        let coarse_shift = k.checked_sub(1).map_or(0, patch_shift);
+        self.seams.extend(seams.map(|seams| PatchSeams {
+            limits: limits(seams.limits),
+            borders: seams.borders.map(|border| {
+                border.map(|border| Border { patch: border.patch.wrapping_add(coarse_shift), ..border })
+            }),
+        }));
+        self.patches.extend(own.iter().map(|patch| RegularPatch {
+            seams: if patch.seams == NONE {
+                NONE
+            } else {
+                next_seams += 1;
+                next_seams - 1
+            },
             points: patch.points.map(|point| points[point as usize]),
             edges: edges(patch.edges),
             ..*patch

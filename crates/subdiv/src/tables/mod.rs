@@ -7,6 +7,7 @@ mod irregular;
 mod limits;
 mod lists;
 mod merge;
+pub mod seams;
 pub mod slots;
 mod stars;
 
@@ -23,6 +24,7 @@ pub use crate::selection::PatchCounts;
 pub use irregular::IrregularFace;
 pub use lists::IndexLists;
 pub use merge::MeshRanges;
+pub use seams::{Border, PatchSeams};
 pub use slots::{DensitySlots, NGON, WIDE};
 
 /// The points of one level.
@@ -50,6 +52,8 @@ pub struct Tables {
     pub limits: LimitTable,
     /// Bicubic patches, level by level.
     pub patches: Vec<RegularPatch>,
+    /// What patches take from neighbours of other kinds, for those that do.
+    pub seams: Vec<PatchSeams>,
     /// Places in `patches`, by level.
     pub patch_ranges: Vec<Range<u32>>,
     /// Irregular faces, level by level; none with uniform refinement.
