@@ -22,7 +22,8 @@ void crease_basis(float t, float sharpness, out precise vec4 n, out precise vec4
     vec4 bd;
     if (local >= 1.0) {
         // Infinitely sharp: row 0 is the reflection 2 p1 - p2.
-        cubic_basis(t, 1.0 - t, bn, bd);
+        precise float s = 1.0 - t;
+        cubic_basis(t, s, bn, bd);
         precise vec4 reflected = vec4(0.0, bn.y + 2.0 * bn.x, bn.z - bn.x, bn.w);
         precise vec4 slope = vec4(0.0, bd.y + 2.0 * bd.x, bd.z - bd.x, bd.w);
         n = reflected;
@@ -53,7 +54,8 @@ void crease_basis(float t, float sharpness, out precise vec4 n, out precise vec4
         p2 = is_second ? q3 : q2;
         p3 = is_second ? q4 : q3;
     }
-    cubic_basis(local, 1.0 - local, bn, bd);
+    precise float rest_of_local = 1.0 - local;
+    cubic_basis(local, rest_of_local, bn, bd);
     n = weights_of(bn, p0, p1, p2, p3);
     d = weights_of(bd, p0, p1, p2, p3) * scale;
 }

@@ -29,6 +29,8 @@ pub struct Cage {
     pub holes: HashSet<usize>,
     /// Ends, the lower first, of edges that are infinitely sharp by a tag.
     pub infinite_edges: HashSet<[usize; 2]>,
+    /// Whether hierarchical edits may sharpen edges.
+    pub sharpens_edges: bool,
 }
 
 impl Cage {
@@ -55,6 +57,7 @@ impl Cage {
                     let (vertices, sharpness) = values.split_at(count_of(counts));
                     cage.add_crease(&numbers(vertices), &numbers(sharpness));
                 }
+                ["t", "edgeedit", ..] => cage.sharpens_edges = true,
                 _ => {}
             }
         }
@@ -85,6 +88,11 @@ impl Cage {
             }
         }
         is_drawn
+    }
+
+    /// Whether the surface has one normal everywhere: no infinitely sharp edge, and none that is not manifold.
+    pub fn is_smooth(&self) -> bool {
+        self.infinite_edges.is_empty() && !self.sharpens_edges && self.is_manifold()
     }
 
     /// For each Ptex face whether it is drawn.

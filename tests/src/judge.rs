@@ -11,7 +11,7 @@ use crate::oracle::{AREA_TOLERANCE, Report};
 use crate::ply::{Dump, Vertex, covered_areas};
 use crate::program::{Outcome, Planish};
 use crate::repository::{is_edited, stem};
-use crate::weld;
+use crate::weld::{self, Weld};
 
 /// Most faults that are told of how one dump's triangles meet.
 const TOLD_FAULTS: usize = 3;
@@ -22,7 +22,7 @@ const STRIDES: [usize; 6] = [1, 3, 7, 13, 29, 61];
 
 /// Scenes in which parts of the surface lie on each other or have no extent, so that points that are not the same are at the
 /// same place; and holes of finer levels, which do not end at the sides of Ptex faces.
-const UNWELDABLE: [&str; 11] = [
+const UNWELDABLE: [&str; 10] = [
     "coincident_vertices",
     "collinear_face",
     "double_sided_quad",
@@ -31,8 +31,6 @@ const UNWELDABLE: [&str; 11] = [
     "edit_hole_2",
     "edit_hole_extraordinary",
     "edit_hole_ngon",
-    // So far from the origin floats are as far apart as the shortest segments are long.
-    "far_from_origin",
     "flat_pair",
     "zero_area_face",
 ];
@@ -101,12 +99,17 @@ fn check_counts(frame: &Value, vertices: &[Vertex]) -> Result<(), String> {
     Ok(())
 }
 
-/// Unless the triangles meet edge to edge, up to the cage's boundary: why not.
+/// Unless the triangles meet edge to edge, up to the cage's boundary, by the bits of their corners' positions, and of smooth surfaces
+/// by those of normals too: why not.
 pub fn check_edges(mesh: &Path, vertices: &[Vertex], outcome: &Outcome) -> Result<(), String> {
     if UNWELDABLE.contains(&stem(mesh)) {
         return Ok(());
     }
-    let mut faults = weld::faults(vertices, &Cage::read(mesh));
+    let cage = Cage::read(mesh);
+    let mut faults = weld::faults(vertices, &cage, Weld::Position);
+    if faults.is_empty() && cage.is_smooth() {
+        faults = weld::faults(vertices, &cage, Weld::PositionAndNormal);
+    }
     faults.retain(|fault| !is_known(mesh, fault));
     let first = faults.iter().take(TOLD_FAULTS).cloned().collect::<Vec<_>>().join("\n  ");
     let told = || Err(outcome.told(&format!("{} faults of edges, the first:\n  {first}", faults.len())));

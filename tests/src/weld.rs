@@ -1,4 +1,4 @@
-//! A dump as one connected mesh: corners that lie within a tolerance of each other are one point.
+//! A dump as one connected mesh: corners whose positions have the same bits are one point; or positions and normals.
 //!
 //! A T-junction, a gap or a missing triangle leaves an edge of one triangle where the limit surface does not end.
 
@@ -7,13 +7,16 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use crate::cage::{Cage, Side};
 use crate::ply::Vertex;
 
-/// Largest distances of corners that are the same point, over the larger of the cage's diagonal and coordinates. The shorter
-/// ones are tried where edges are so short that their ends would be one point.
-const TOLERANCES: [f64; 3] = [1e-6, 3e-7, 1e-7];
 /// How far the open edges along a side of a Ptex face may be from covering it once.
 const COVERAGE_TOLERANCE: f64 = 1e-5;
-/// Side of a cell of the grid in which points are found, in tolerances.
-const CELL_SIZE: f64 = 16.0;
+/// What must have the same bits for corners to be one point. Of zeros the sign does not count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weld {
+    /// Positions.
+    Position,
+    /// Positions and normals: of surfaces without sharp edges.
+    PositionAndNormal,
+}
 
 /// The edges of a welded dump.
 struct Edges {
@@ -23,29 +26,10 @@ struct Edges {
 }
 
 /// All that is wrong with how a dump's triangles hang together: they must meet edge to edge, the same way round, and end
-/// exactly where the cage's limit surface does. What is right at one of the tolerances is right.
-pub fn faults(vertices: &[Vertex], cage: &Cage) -> Vec<String> {
-    let largest = vertices.iter().flat_map(|vertex| vertex.position).fold(0.0, |a: f32, b| a.max(b.abs()));
-    let size = cage.diagonal().max(f64::from(largest));
-    let found = TOLERANCES.iter().map(|tolerance| faults_within(vertices, cage, tolerance * size));
-    // Of those that are not right the one with fewest faults tells most.
-    let mut least: Option<Vec<String>> = None;
-    for faults in found {
-        if least.as_ref().is_none_or(|least| faults.len() < least.len()) {
-            least = Some(faults);
-        }
-        if least.as_ref().is_some_and(Vec::is_empty) {
-            break;
-        }
-    }
-    least.unwrap_or_default()
-}
-
-/// The same where corners closer than the tolerance are one point. A triangle of fewer than three points is none: it is that
-/// thin, or without area, as the tessellator makes them around a patch-filling quad's fan, and where a piece of a cut patch
-/// has a single point of the patch's edge.
-fn faults_within(vertices: &[Vertex], cage: &Cage, tolerance: f64) -> Vec<String> {
-    let points = weld(vertices, tolerance);
+/// exactly where the cage's limit surface does. A triangle of fewer than three points is none: the tessellator makes such
+/// around a patch-filling quad's fan, and where a piece of a cut patch has a single point of the patch's edge.
+pub fn faults(vertices: &[Vertex], cage: &Cage, by: Weld) -> Vec<String> {
+    let points = weld(vertices, by);
     if !cage.is_manifold() {
         return multiplicity_faults(&points, vertices, cage);
     }
@@ -187,33 +171,14 @@ fn loops(edges: &[[u32; 2]]) -> Option<usize> {
     Some(count)
 }
 
-/// The point that each vertex is: the first one within the tolerance.
-fn weld(vertices: &[Vertex], tolerance: f64) -> Vec<u32> {
-    let cell_size = CELL_SIZE * tolerance;
-    let mut points: Vec<[f64; 3]> = Vec::new();
-    let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
-    let cell = |position: [f64; 3]| position.map(|coordinate| (coordinate / cell_size).floor() as i64);
-    let mut point_of = |position: [f64; 3]| {
-        let [first, last] = [-tolerance, tolerance].map(|shift| cell(position.map(|coordinate| coordinate + shift)));
-        for x in first[0]..=last[0] {
-            for y in first[1]..=last[1] {
-                for z in first[2]..=last[2] {
-                    let candidates = cells.get(&[x, y, z]).into_iter().flatten();
-                    let is_near = |&&point: &&u32| distance(points[point as usize], position) <= tolerance;
-                    if let Some(&point) = candidates.clone().find(is_near) {
-                        return point;
-                    }
-                }
-            }
-        }
-        let point = points.len() as u32;
-        points.push(position);
-        cells.entry(cell(position)).or_default().push(point);
-        point
+/// The point that each vertex is.
+fn weld(vertices: &[Vertex], by: Weld) -> Vec<u32> {
+    let mut points: HashMap<[[u32; 3]; 2], u32> = HashMap::new();
+    let bits = |vector: [f32; 3]| vector.map(|value| if value == 0.0 { 0 } else { value.to_bits() });
+    let mut point_of = |vertex: &Vertex| {
+        let normal = if by == Weld::Position { [0; 3] } else { bits(vertex.normal) };
+        let next = points.len() as u32;
+        *points.entry([bits(vertex.position), normal]).or_insert(next)
     };
-    vertices.iter().map(|vertex| point_of(vertex.position.map(f64::from))).collect()
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
+    vertices.iter().map(|vertex| point_of(vertex)).collect()
 }

@@ -158,6 +158,9 @@ pub struct BenchArguments {
     /// Time fas at these tess factors with each kind of crease patches
     #[arg(long, requires = "tess")]
     pub creases: bool,
+    /// Time fas and dfas at these tess factors with and without watertight seams
+    #[arg(long, requires = "tess", conflicts_with = "creases")]
+    pub seams: bool,
     /// Time the building of tables for these levels instead, on one thread of the CPU; needs no device
     #[arg(long)]
     pub cpu: bool,

@@ -7,8 +7,8 @@ use planish_gpu::{ComputePipeline, Device, Encoder, Transfer};
 use planish_shaders as shaders;
 
 use crate::error::Error;
+use crate::lists::{CHUNK, LIST_ACTIVE, LIST_BASE, LIST_LEAVES, LIST_MIDDLES, LIST_PATCHES, LIST_ROOTS, LIST_VERTICES};
 use crate::options::FrameNeeds;
-use crate::lists::{CHUNK, LIST_ACTIVE, LIST_BASE, LIST_LEAVES, LIST_PATCHES, LIST_MIDDLES, LIST_ROOTS, LIST_VERTICES};
 use crate::program::compute_pipeline;
 use crate::surface::Surface;
 use crate::upload::address;

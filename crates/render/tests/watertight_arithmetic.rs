@@ -5,19 +5,27 @@ use planish_shaders::precise::no_contraction_report;
 use planish_shaders::{self as shaders, ShaderModule};
 
 /// Functions whose arithmetic decides shared positions and normals, by module.
+const EVALUATION: [&str; 15] = [
+    "cubic_basis",
+    "crease_basis",
+    "weigh",
+    "weigh_patch",
+    "patch_position",
+    "curve_position",
+    "without_sign_of_zero",
+    "border_point",
+    "reflected_point",
+    "to_world",
+    "normal_to_world",
+    "precise_cross",
+    "scaled",
+    "unit_vector",
+    "place",
+];
 const WATERTIGHT: [(&ShaderModule, &[&str]); 5] = [
-    (
-        &shaders::bspline_patch_lean_tese::PROGRAM,
-        &["cubic_basis", "weigh", "precise_cross", "scaled", "unit_vector", "place"],
-    ),
-    (
-        &shaders::bspline_patch_layers_tese::PROGRAM,
-        &["cubic_basis", "weigh", "precise_cross", "scaled", "unit_vector", "place"],
-    ),
-    (
-        &shaders::bspline_patch_dump_tese::PROGRAM,
-        &["cubic_basis", "weigh", "precise_cross", "scaled", "unit_vector", "place"],
-    ),
+    (&shaders::bspline_patch_lean_tese::PROGRAM, &EVALUATION),
+    (&shaders::bspline_patch_layers_tese::PROGRAM, &EVALUATION),
+    (&shaders::bspline_patch_dump_tese::PROGRAM, &EVALUATION),
     (&shaders::bspline_patch_tesc::PROGRAM, &["reflected_point", "to_world"]),
     (&shaders::filling_quad_tesc::PROGRAM, &["to_world", "normal_to_world", "unit_vector"]),
 ];

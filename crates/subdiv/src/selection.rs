@@ -185,8 +185,9 @@ pub fn select(tables: &Tables, mesh: &MeshRanges, slots: &SlotDensities, selecti
         faces = next;
     }
     marks.leaves(tables, &mut cut.leaves);
-    marks.list(tables, mesh, &mut cut);
     let level_0 = mesh.patches.first().cloned().unwrap_or_default();
+    level_0.clone().chain(cut.patches.iter().copied()).for_each(|patch| marks.corners(tables, patch));
+    marks.list(tables, mesh, &mut cut);
     for place in level_0.chain(cut.patches.iter().copied()) {
         let patch = &tables.patches[place as usize];
         let is_split = |edge: &u32| *edge != NONE && marks.edges[*edge as usize];
@@ -327,6 +328,13 @@ impl Marks {
                 }
             }
         }
+    }
+
+    /// Marks the limit points that a patch's corners are.
+    fn corners(&mut self, tables: &Tables, patch: u32) {
+        let seams = tables.seams.get(tables.patches[patch as usize].seams as usize);
+        let limits = seams.into_iter().flat_map(|seams| seams.limits);
+        limits.filter(|&limit| limit != NONE).for_each(|limit| self.limits[limit as usize] = true);
     }
 
     fn list(&self, tables: &Tables, mesh: &MeshRanges, cut: &mut Cut) {

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use planish_gpu::Device;
-use planish_render::{Density, SurfaceDesc, SurfaceMethod, View};
+use planish_render::{Density, FrameNeeds, SurfaceDesc, SurfaceMethod, View};
 use planish_subdiv::refine::CreasePatches;
 use serde::Serialize;
 
@@ -42,11 +42,11 @@ impl Measured {
 pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) -> Result<Measured> {
     let arguments = bench.arguments;
     let camera = cage.default_view()?;
-    let Setting { method, level, tess_factor, crease_patches } = setting;
+    let Setting { method, level, tess_factor, crease_patches, watertight } = setting;
     let objects = cage.objects(&camera);
     let mut plan = Plan {
         frame_camera: frame_camera(&camera, arguments.size),
-        needs: frame_needs(arguments.spacing.into(), tess_factor, &objects),
+        needs: FrameNeeds { watertight, ..frame_needs(arguments.spacing.into(), tess_factor, &objects) },
         objects,
         camera,
         desc: SurfaceDesc { method, level, crease_patches },
@@ -79,6 +79,7 @@ pub struct Setting {
     pub level: u32,
     pub tess_factor: f32,
     pub crease_patches: CreasePatches,
+    pub watertight: bool,
 }
 
 fn medians(level: u32, frames: &[FrameStats]) -> Measured {

@@ -5,6 +5,7 @@
 //! | `levels` | fas with uniform refinement, level by level: FAS section 8.1, Table I |
 //! | `factors` | fas at several tess factors |
 //! | `creases` | crease patches of every kind with refined creases |
+//! | `seams` | frames whose seams have the same bits on both sides with frames of patches by themselves |
 //! | `path` | fas with dfas, along a camera path or from the scene's cameras; `chart` draws it |
 //! | `cpu` | the building of tables alone |
 //! | `measure` | what all of them measure of a frame |
@@ -18,6 +19,7 @@ mod levels;
 mod measure;
 mod path;
 mod peer;
+mod seams;
 
 use anyhow::Result;
 use planish_gpu::Device;
@@ -43,6 +45,8 @@ pub fn run(arguments: &BenchArguments, console: &Console) -> Result<()> {
         bench.scenes(Some(&device), |cage| path::run(&bench, &device, cage))?;
     } else if arguments.creases {
         bench.scenes(Some(&device), |cage| creases::run(&bench, &device, cage))?;
+    } else if arguments.seams {
+        bench.scenes(Some(&device), |cage| seams::run(&bench, &device, cage))?;
     } else if arguments.tess.is_empty() {
         bench.scenes(Some(&device), |cage| levels::run(&bench, &device, cage))?;
     } else {

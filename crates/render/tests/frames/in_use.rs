@@ -3,6 +3,7 @@
 use planish_render::{Culling, Density, FrameOptions, PatchKind, Selection, Spacing};
 use planish_shaders::DrawEntry;
 use planish_subdiv::tables::Tables;
+use planish_subdiv::topology::NONE;
 
 use crate::lab::Lab;
 use crate::world::World;
@@ -46,6 +47,9 @@ fn least(tables: &Tables, entries: &[Vec<DrawEntry>; 4]) -> u64 {
         for entry in &entries[kind as usize] {
             let patch = &tables.patches[entry.place as usize];
             control_points(&patch.points, patch.info.boundary).for_each(|point| points[point as usize] = true);
+            let seams = tables.seams.get(patch.seams as usize);
+            let corners = seams.into_iter().flat_map(|seams| seams.limits).filter(|&limit| limit != NONE);
+            corners.for_each(|limit| limits[limit as usize] = true);
         }
     }
     for entry in &entries[PatchKind::Filling as usize] {

@@ -182,8 +182,7 @@ impl<'a> LevelFaces<'a> {
                 let own = [0, 3].map(|j| child_half_edge(0, above.level, corner, j));
                 seams.borders = borders(above.level, &places_above, corner, own);
             }
-            seams.limits =
-                four(|i| if shared.is_limit(first + i) { limits.point(self.k, first + i) } else { NONE });
+            seams.limits = four(|i| if shared.is_limit(first + i) { limits.point(self.k, first + i) } else { NONE });
             let place = if seams == PatchSeams::NOTHING { NONE } else { tables.seams.len() as u32 };
             tables.seams.extend((place != NONE).then_some(seams));
             let points = points.map(|v| first_point + v);

@@ -220,9 +220,10 @@ impl Tables {
         let coarse_shift = k.checked_sub(1).map_or(0, patch_shift);
         self.seams.extend(seams.map(|seams| PatchSeams {
             limits: limits(seams.limits),
-            borders: seams.borders.map(|border| {
-                border.map(|border| Border { patch: border.patch.wrapping_add(coarse_shift), ..border })
-            }),
+            borders:
+                seams.borders.map(|border| {
+                    border.map(|border| Border { patch: border.patch.wrapping_add(coarse_shift), ..border })
+                }),
         }));
         self.patches.extend(own.iter().map(|patch| RegularPatch {
             seams: if patch.seams == NONE {
