@@ -93,7 +93,7 @@ impl Cage {
 
     /// Whether a mesh has texture coordinates.
     pub fn has_uv(&self) -> bool {
-        self.scene.meshes.iter().any(|mesh| mesh.uv.is_some())
+        self.scene.meshes.iter().any(|mesh| !mesh.control_mesh.face_varying.is_empty())
     }
 
     /// Length of the bounding box' diagonal.

@@ -31,7 +31,7 @@ pub use error::Error;
 pub use instance::Instance;
 pub use json::{MAX_INSTANCES, read_json};
 pub use path::{CameraPath, Key, MAX_FRAMES};
-pub use scene::{FaceVaryingChannel, Mesh, Scene, Warning};
+pub use scene::{Mesh, Scene, Warning};
 
 use std::path::Path;
 

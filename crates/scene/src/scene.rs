@@ -29,19 +29,8 @@ pub struct Scene {
 pub struct Mesh {
     /// The object's name in the file (OBJ: the first `o`), else the file's stem.
     pub name: String,
-    /// The cage.
+    /// The cage. Texture coordinates, when every corner of every face has one, are its face-varying channel `st`.
     pub control_mesh: ControlMesh,
-    /// Texture coordinates, when every corner of every face has one.
-    pub uv: Option<FaceVaryingChannel>,
-}
-
-/// Values that belong to the corners of faces: a vertex may have a different one in each of its faces.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct FaceVaryingChannel {
-    /// The distinct values.
-    pub values: Vec<[f32; 2]>,
-    /// Into `values`, one a face-vertex, parallel to [`ControlMesh::face_vertices`].
-    pub indices: Vec<u32>,
 }
 
 /// Something odd in a file that did not keep it from being read.

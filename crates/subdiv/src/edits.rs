@@ -170,7 +170,7 @@ fn set_vertex_sharpness(level: &mut Level, half_edge: u32, change: impl Fn(f32) 
     let sharpness = change(level.vertex_sharpness(vertex)).clamp(0.0, INFINITE_SHARPNESS);
     level.vertex_sharpness.resize(level.tags.len(), 0.0);
     level.vertex_sharpness[vertex as usize] = sharpness;
-    level.tags[vertex as usize] = level.vertex_tag(vertex);
+    level.tags[vertex as usize] = level.vertex_tag(vertex).with_values_of(level.tag(vertex));
 }
 
 fn set_edge_sharpness(level: &mut Level, half_edge: u32, change: impl Fn(f32) -> f32) {
@@ -184,6 +184,6 @@ fn set_edge_sharpness(level: &mut Level, half_edge: u32, change: impl Fn(f32) ->
         level.edge_sharpness[side as usize] = sharpness;
     }
     for vertex in [level.origin(half_edge), level.head(half_edge)] {
-        level.tags[vertex as usize] = level.vertex_tag(vertex);
+        level.tags[vertex as usize] = level.vertex_tag(vertex).with_values_of(level.tag(vertex));
     }
 }

@@ -75,6 +75,14 @@ pub enum Error {
         /// The vertex.
         vertex: u32,
     },
+    /// A face-varying channel has an index out of range, or a value that is no usable number.
+    #[error("face-varying channel {channel} (from 0): {fault}")]
+    FaceVarying {
+        /// The channel.
+        channel: u32,
+        /// What is wrong with it.
+        fault: String,
+    },
     /// The tables would need indices of more than 32 bits.
     #[error("level {level} would have {count} elements; at most 2^31 can be indexed")]
     TooLarge {

@@ -1,13 +1,15 @@
 //! Control meshes, subdivision rules, refinement, tables and the CPU evaluator.
 //!
 //! Layers, each using only those before it: [`mesh`] (the cage), [`rules`] (masks, no topology), [`topology`] (one level
-//! as half-edges), [`refine`] (feature-adaptive levels), then [`tables`] (what the GPU reads), [`selection`] (what a frame
+//! as half-edges), `face_varying` (channels of values at face
+//! corners), [`refine`] (feature-adaptive levels), then [`tables`] (what the GPU reads), [`selection`] (what a frame
 //! makes of them) and [`eval`] (f64 evaluator).
 
 mod base_level;
 pub mod edits;
 pub mod error;
 pub mod eval;
+mod face_varying;
 pub mod limit;
 pub mod mesh;
 pub mod patch;

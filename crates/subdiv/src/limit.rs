@@ -10,7 +10,7 @@ use crate::ring::{Decay, Ring, Step};
 use crate::rules::{self, BoundaryTangent, VertexRule};
 use crate::sharpness::SharpnessAtVertex;
 use crate::stencil::{StencilRow, boundary_neighbours, ring_pair, shared};
-use crate::topology::Level;
+use crate::topology::{Level, Sector};
 
 /// Rows that make limit points. As in a stencil row the first index is the origin p0: the position is
 /// p0 + sum w (p - p0), the tangents are sum w (p - p0), and their cross product points outward.
@@ -46,6 +46,33 @@ pub fn limit_mask(level: &Level, corner: u32) -> (Vec<u32>, Vec<[f64; 3]>) {
     let rule = mask_points(level, vertex, |point| points.push(point));
     mask_weights(rule, |weight| weights.push(weight));
     (points, weights)
+}
+
+/// The same with the points as corners: each names its vertex in a face of the sector, so that face-varying values can be
+/// told apart. Ends of creases beyond the sector are named in a face beside the crease.
+pub(crate) fn limit_mask_at_corners(level: &Level, corner: u32) -> (Vec<u32>, Vec<[f64; 3]>) {
+    let (points, weights) = limit_mask(level, corner);
+    let vertex = level.origin(corner);
+    let sector = if level.tag(vertex).is_plain() {
+        let is_closed = !level.tag(vertex).is_boundary();
+        Sector { spokes: level.spokes(vertex).collect(), is_closed }
+    } else {
+        level.sector(corner)
+    };
+    let mut corners = vec![sector.spokes[0]];
+    corners.extend(sector.spokes.iter().flat_map(|&spoke| {
+        let next = level.next(spoke);
+        [next, level.next(next)]
+    }));
+    if !sector.is_closed {
+        corners.push(level.previous(sector.spokes[sector.spokes.len() - 1]));
+    }
+    let edges = level.incident_edges(vertex);
+    for &point in &points[corners.len()..] {
+        let edge = edges.iter().find(|&&edge| level.other_end(edge, vertex) == point);
+        corners.extend(edge.map(|&edge| if level.origin(edge) == vertex { level.next(edge) } else { edge }));
+    }
+    (corners, weights)
 }
 
 /// The limit rule of a sector with so many faces.

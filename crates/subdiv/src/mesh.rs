@@ -118,6 +118,18 @@ pub struct MeshOptions {
     pub face_varying: FaceVaryingInterpolation,
 }
 
+/// Values that belong to the corners of faces: texture coordinates, mostly. Where two faces name different values at a
+/// vertex the channel has a seam, even if the numbers are the same.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FaceVaryingChannel {
+    /// What files and shaders call it.
+    pub name: String,
+    /// The distinct values.
+    pub values: Vec<[f32; 2]>,
+    /// Into `values`, one a face corner, parallel to [`ControlMesh::face_vertices`].
+    pub indices: Vec<u32>,
+}
+
 /// A Catmull-Clark cage. Plain data; [`ControlMesh::validate`] says whether it can be subdivided.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ControlMesh {
@@ -137,6 +149,8 @@ pub struct ControlMesh {
     pub edits: Vec<HierarchicalEdit>,
     /// Scales the density of tessellation, one a vertex; empty: 1 everywhere.
     pub density: Vec<f32>,
+    /// Channels of values at the corners of faces. They do not animate.
+    pub face_varying: Vec<FaceVaryingChannel>,
     /// Options.
     pub options: MeshOptions,
 }
@@ -165,7 +179,7 @@ impl ControlMesh {
     }
 
     /// Checks what refinement relies on: indices in range, at least three different vertices a face, finite positions
-    /// and densities, edits of what exists.
+    /// and densities, face-varying values that are there and finite, edits of what exists.
     pub fn validate(&self) -> Result<(), Error> {
         if self.face_sizes.is_empty() {
             return Err(Error::Empty);
@@ -214,6 +228,29 @@ impl ControlMesh {
         for vertex in self.creases.iter().flat_map(|c| c.vertices).chain(self.corners.iter().map(|c| c.vertex)) {
             in_range("vertex", vertex, self.positions.len())?;
         }
+        for (number, channel) in (0..).zip(&self.face_varying) {
+            channel.validate(found).map_err(|fault| Error::FaceVarying { channel: number, fault })?;
+        }
         crate::edits::validate(self)
+    }
+}
+
+impl FaceVaryingChannel {
+    /// What is wrong with the channel of a mesh with so many face corners.
+    fn validate(&self, corner_count: u64) -> Result<(), String> {
+        let is_number = |value: &[f32; 2]| value.iter().all(|c| c.abs() <= MAX_COORDINATE);
+        if let Some(value) = self.values.iter().position(|value| !is_number(value)) {
+            return Err(format!("value {value} (from 0) is not finite, or beyond {MAX_COORDINATE:e}"));
+        }
+        if self.indices.len() as u64 != corner_count {
+            return Err(format!("{} indices for {corner_count} face corners", self.indices.len()));
+        }
+        match self.indices.iter().position(|&index| index as usize >= self.values.len()) {
+            None => Ok(()),
+            Some(corner) => {
+                let (index, count) = (self.indices[corner], self.values.len());
+                Err(format!("index {index} of corner {corner} (both from 0) is out of range: there are {count} values"))
+            }
+        }
     }
 }

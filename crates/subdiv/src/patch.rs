@@ -87,11 +87,11 @@ pub struct FillingQuad {
 }
 
 /// Place in the 4 x 4 control points of each corner of the face.
-const CORNERS: [usize; 4] = [5, 6, 10, 9];
+pub(crate) const CORNERS: [usize; 4] = [5, 6, 10, 9];
 /// Places of the two points across edge i, beside its first and its second vertex.
-const ACROSS: [[usize; 2]; 4] = [[1, 2], [7, 11], [14, 13], [8, 4]];
+pub(crate) const ACROSS: [[usize; 2]; 4] = [[1, 2], [7, 11], [14, 13], [8, 4]];
 /// Place of the point diagonally across corner i.
-const DIAGONAL: [usize; 4] = [0, 3, 15, 12];
+pub(crate) const DIAGONAL: [usize; 4] = [0, 3, 15, 12];
 
 /// The control points of a regular face, as vertices of its level, and the mask of its boundary edges: those that are
 /// infinitely sharp, whether or not a face lies beyond.

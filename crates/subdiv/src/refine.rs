@@ -9,6 +9,7 @@ use std::collections::{HashMap, HashSet};
 
 use crate::edits::{self, PathEdits};
 use crate::error::Error;
+use crate::face_varying::{Channel, ChannelLevel};
 use crate::mesh::{ControlMesh, Creasing, HierarchicalEdit, INFINITE_SHARPNESS, MAX_ELEMENTS};
 use crate::rules;
 use crate::sharpness::{SharpnessAtVertex, child_sharpness};
@@ -81,6 +82,8 @@ pub struct Refinement {
     pub edits: Vec<HierarchicalEdit>,
     /// For each level the vertices that hierarchical edits move, and the number of the edit, in the edits' order.
     pub moved_points: Vec<Vec<(u32, u32)>>,
+    /// The mesh's face-varying channels.
+    pub(crate) face_varying: Vec<Channel>,
     /// The deepest level: `max_level`, or deeper where n-gons or edits ask for it.
     pub last_level: u32,
     /// What was asked for.
@@ -99,6 +102,7 @@ impl Refinement {
         let last_level = options.max_level.max(u32::from(has_non_quads)).max(edits::deepest_level(mesh));
         let mut path_edits = PathEdits::new(mesh);
         let mut moved_points = vec![path_edits.apply(&mut levels[0])];
+        let mut face_varying = channels(mesh, &mut levels[0]);
         let mut splits = Vec::new();
         let (mut irregular_faces, mut split_faces, mut forced_faces) = (Vec::new(), Vec::new(), Vec::new());
         for k in 0..=last_level {
@@ -106,7 +110,9 @@ impl Refinement {
             let mut forced = path_edits.forced_faces(level);
             forced.extend((0..level.drawn_count).filter(|&face| level.is_drawn(face) && level.sides(face) != 4));
             let mut irregular: Vec<u32> = (0..level.drawn_count)
-                .filter(|&face| level.is_drawn(face) && (options.uniform || !is_leaf_patch(level, face, options)))
+                .filter(|&face| {
+                    level.is_drawn(face) && (options.uniform || !is_leaf_patch(level, face, options, &face_varying))
+                })
                 .collect();
             irregular.extend(&forced);
             for faces in [&mut forced, &mut irregular] {
@@ -120,6 +126,10 @@ impl Refinement {
                 let (split, mut child) = split_level_around(level, &split_here, core, k + 1)?;
                 path_edits.descend(level, &split_here);
                 moved_points.push(path_edits.apply(&mut child));
+                for channel in &mut face_varying {
+                    let channel_level = channel.levels[k as usize].split(level, &split);
+                    channel.levels.push(channel_level);
+                }
                 splits.push(split);
                 levels.push(child);
             }
@@ -136,6 +146,7 @@ impl Refinement {
             forced_faces,
             edits,
             moved_points,
+            face_varying,
             last_level,
             options,
         };
@@ -168,14 +179,32 @@ fn core_beside_non_quads(level: &Level, faces: &[u32]) -> Vec<u32> {
 }
 
 /// Whether a face's limit is one patch of its level.
-fn is_leaf_patch(level: &Level, face: u32, options: RefineOptions) -> bool {
+fn is_leaf_patch(level: &Level, face: u32, options: RefineOptions, channels: &[Channel]) -> bool {
     match options.crease_patches {
         CreasePatches::None => {
             level.is_regular(face) && !level.vertices(face).iter().any(|&v| level.tag(v).has_infinite_crease())
         }
         CreasePatches::Infinite => level.is_regular(face),
-        CreasePatches::Single => level.is_regular(face) || level.single_crease(face).is_some(),
+        CreasePatches::Single => {
+            // Every channel has one level more than there are splits.
+            let follows =
+                |channel: &Channel| channel.levels.last().is_none_or(|last| last.follows_vertices(level, face));
+            level.is_regular(face) || (level.single_crease(face).is_some() && channels.iter().all(follows))
+        }
     }
+}
+
+/// A mesh's channels on level 0, whose vertices are tagged where a channel is not regular.
+fn channels(mesh: &ControlMesh, level: &mut Level) -> Vec<Channel> {
+    let channels = mesh.face_varying.iter().map(|channel| {
+        let of_level = ChannelLevel::of_mesh(level, channel);
+        let irregular: Vec<u32> = of_level.irregular_vertices(level).collect();
+        irregular.into_iter().for_each(|vertex| {
+            level.tags[vertex as usize] = level.tag(vertex).with_irregular_values();
+        });
+        Channel { name: channel.name.clone(), levels: vec![of_level] }
+    });
+    channels.collect()
 }
 
 /// Maps from the elements of a level to those of the next one that they become; [`NONE`] where they do not.

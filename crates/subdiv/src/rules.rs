@@ -165,14 +165,19 @@ impl VertexBlend {
         if before.0 == after.0 || matches!(before.0, VertexRule::Smooth | VertexRule::Dart) {
             return Self { before, after: before, weight: 1.0 };
         }
-        // The average of the sharpnesses that reach zero in this step.
-        let pairs = edges[0].iter().zip(edges[1]).chain(std::iter::once((&vertex[0], &vertex[1])));
-        let (sum, count) = pairs
-            .filter(|&(&before, &after)| before > 0.0 && after <= 0.0)
-            .fold((0.0_f32, 0.0_f32), |(sum, count), (&before, _)| (sum + before, count + 1.0));
-        let weight = if count == 0.0 { 0.0 } else { (sum / count).min(1.0) };
-        Self { before, after, weight: f64::from(weight) }
+        Self { before, after, weight: fractional_weight(vertex, edges) }
     }
+}
+
+/// Weight of the rule before a step in which sharpness goes from the first to the second of each pair: the average of
+/// those that reach zero, at most 1.
+pub(crate) fn fractional_weight(vertex: [f32; 2], edges: [&[f32]; 2]) -> f64 {
+    let pairs = edges[0].iter().zip(edges[1]).chain(std::iter::once((&vertex[0], &vertex[1])));
+    let (sum, count) = pairs
+        .filter(|&(&before, &after)| before > 0.0 && after <= 0.0)
+        .fold((0.0_f32, 0.0_f32), |(sum, count), (&before, _)| (sum + before, count + 1.0));
+    let weight = if count == 0.0 { 0.0 } else { (sum / count).min(1.0) };
+    f64::from(weight)
 }
 
 /// Weight of the crease rule (the middle of the edge) for an edge of this sharpness whose children at its two ends have

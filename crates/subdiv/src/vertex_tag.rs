@@ -1,4 +1,4 @@
-//! What decides the rules at a vertex, in a byte.
+//! What decides the rules at a vertex, in two bytes.
 
 /// What decides the rules at a vertex.
 ///
@@ -12,18 +12,20 @@
 /// | 5 | an end of an infinitely sharp edge between two faces |
 /// | 6 | not manifold: more than one fan of faces, or an edge of more than two faces |
 /// | 7 | infinitely sharp edges do not cut the faces as a regular boundary or corner has them |
+/// | 8 | seams of a face-varying channel do not either |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct VertexTag(u8);
+pub struct VertexTag(u16);
 
 impl VertexTag {
-    const BOUNDARY: u8 = 1;
-    const CORNER: u8 = 2;
-    const EXTRAORDINARY: u8 = 4;
-    const BESIDE_NON_QUAD: u8 = 8;
-    const SEMI_SHARP: u8 = 16;
-    const INFINITE_CREASE: u8 = 32;
-    const NON_MANIFOLD: u8 = 64;
-    const IRREGULAR_SECTORS: u8 = 128;
+    const BOUNDARY: u16 = 1;
+    const CORNER: u16 = 2;
+    const EXTRAORDINARY: u16 = 4;
+    const BESIDE_NON_QUAD: u16 = 8;
+    const SEMI_SHARP: u16 = 16;
+    const INFINITE_CREASE: u16 = 32;
+    const NON_MANIFOLD: u16 = 64;
+    const IRREGULAR_SECTORS: u16 = 128;
+    const IRREGULAR_VALUES: u16 = 256;
 
     /// The tag of a manifold vertex with this many faces.
     pub fn new(face_count: u32, boundary: bool, corner: bool, beside_non_quad: bool) -> Self {
@@ -34,10 +36,10 @@ impl VertexTag {
             (true, true) => face_count == 1,
         };
         Self(
-            (u8::from(boundary) * Self::BOUNDARY)
-                | (u8::from(corner) * Self::CORNER)
-                | (u8::from(!regular) * Self::EXTRAORDINARY)
-                | (u8::from(beside_non_quad) * Self::BESIDE_NON_QUAD),
+            (u16::from(boundary) * Self::BOUNDARY)
+                | (u16::from(corner) * Self::CORNER)
+                | (u16::from(!regular) * Self::EXTRAORDINARY)
+                | (u16::from(beside_non_quad) * Self::BESIDE_NON_QUAD),
         )
     }
 
@@ -55,11 +57,20 @@ impl VertexTag {
     /// The tag with what its edges' and its own sharpness adds.
     pub(crate) fn with_sharpness(self, semi_sharp: bool, infinite_crease: bool) -> Self {
         let kept = self.0 & !(Self::SEMI_SHARP | Self::INFINITE_CREASE);
-        Self(kept | (u8::from(semi_sharp) * Self::SEMI_SHARP) | (u8::from(infinite_crease) * Self::INFINITE_CREASE))
+        Self(kept | (u16::from(semi_sharp) * Self::SEMI_SHARP) | (u16::from(infinite_crease) * Self::INFINITE_CREASE))
     }
 
     pub(crate) fn with_irregular_sectors(self) -> Self {
         Self(self.0 | Self::IRREGULAR_SECTORS)
+    }
+
+    pub(crate) fn with_irregular_values(self) -> Self {
+        Self(self.0 | Self::IRREGULAR_VALUES)
+    }
+
+    /// The tag with what an older one of the same vertex says of face-varying channels.
+    pub(crate) fn with_values_of(self, older: Self) -> Self {
+        Self(self.0 | older.0 & Self::IRREGULAR_VALUES)
     }
 
     /// On the boundary of a manifold part: the crease rule, unless it is a corner.
@@ -97,11 +108,11 @@ impl VertexTag {
         self.0 & (Self::SEMI_SHARP | Self::INFINITE_CREASE | Self::NON_MANIFOLD) == 0
     }
 
-    /// Quads all of whose vertices are so have a bicubic limit patch.
+    /// Quads all of whose vertices are so have a bicubic limit patch, and so do their face-varying values.
     pub fn is_regular(self) -> bool {
         let is_cut = self.0 & (Self::INFINITE_CREASE | Self::NON_MANIFOLD) != 0;
         let irregular = if is_cut { Self::IRREGULAR_SECTORS } else { Self::EXTRAORDINARY };
-        self.0 & (irregular | Self::BESIDE_NON_QUAD | Self::SEMI_SHARP) == 0
+        self.0 & (irregular | Self::IRREGULAR_VALUES | Self::BESIDE_NON_QUAD | Self::SEMI_SHARP) == 0
     }
 
     /// All faces at the vertex are quads.

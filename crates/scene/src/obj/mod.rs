@@ -22,13 +22,16 @@ mod warnings;
 pub(crate) use lines::quoted;
 pub(crate) use warnings::Warnings;
 
-use planish_subdiv::mesh::{ControlMesh, MAX_ELEMENTS};
+use planish_subdiv::mesh::{ControlMesh, FaceVaryingChannel, MAX_ELEMENTS};
 
 use crate::error::Fault;
-use crate::{FaceVaryingChannel, LoadOptions, Mesh, Warning};
+use crate::{LoadOptions, Mesh, Warning};
 use faces::Faces;
 use lines::{Line, Lines, Tokens, number};
 use tags::Tag;
+
+/// What the channel of texture coordinates is called, as in USD.
+const UV_NAME: &str = "st";
 
 /// The byte order mark with which some editors begin UTF-8 files.
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
@@ -96,19 +99,21 @@ impl Reader {
         if self.faces.sizes.is_empty() {
             return Err(Fault::whole("no faces", "lines `f 1 2 3 ..`"));
         }
-        let uv = self.uv_channel()?;
+        let face_varying = self.uv_channel()?.into_iter().collect();
         let mut control_mesh = ControlMesh {
             positions: self.positions,
             face_sizes: self.faces.sizes,
             face_vertices: self.faces.vertices,
+            face_varying,
             ..ControlMesh::default()
         };
         apply::apply(&self.tags, &face_map, &mut control_mesh, &mut self.warnings)?;
-        let mesh = Mesh { name: self.object_name.unwrap_or_else(|| name.to_owned()), control_mesh, uv };
+        let mesh = Mesh { name: self.object_name.unwrap_or_else(|| name.to_owned()), control_mesh };
         Ok((mesh, self.warnings.into_vec()))
     }
 
-    /// The texture coordinates when every corner has one; none, with a warning, when only some have.
+    /// The texture coordinates, when corners have them: then every corner must. What face has none could be guessed at,
+    /// but its seams could not. Without a single `vt` line there is no channel either, with a warning.
     fn uv_channel(&mut self) -> Result<Option<FaceVaryingChannel>, Fault> {
         let present = self.faces.uvs.iter().filter(|uv| uv.is_some()).count();
         if present == 0 {
@@ -120,12 +125,10 @@ impl Reader {
         }
         self.faces.check_uvs(self.uvs.len())?;
         if let Some(line) = self.faces.first_line_without_uv() {
-            self.warnings
-                .push(Some(line), "a corner without vt, where others have one: no texture coordinates are used");
-            return Ok(None);
+            return Err(Fault::at(line, "a corner without vt", "one at every corner of every face, or at none"));
         }
         let indices = self.faces.uvs.iter().flatten().map(|uv| uv.get() - 1).collect();
-        Ok(Some(FaceVaryingChannel { values: std::mem::take(&mut self.uvs), indices }))
+        Ok(Some(FaceVaryingChannel { name: UV_NAME.to_owned(), values: std::mem::take(&mut self.uvs), indices }))
     }
 }
 

@@ -104,7 +104,7 @@ fn repair_drops_degenerate_faces_with_a_warning_each() {
 #[test]
 fn repair_keeps_texture_coordinates_with_their_faces() {
     let scene = repair(&format!("{TRIANGLE}vt 0\nvt 1\nvt 2\nf 1/1 1/1 2/1\nf 1/1 2/2 3/3\n"));
-    assert_eq!(scene.meshes[0].uv.as_ref().unwrap().indices, [0, 1, 2]);
+    assert_eq!(scene.meshes[0].control_mesh.face_varying[0].indices, [0, 1, 2]);
 }
 
 #[test]
@@ -121,18 +121,16 @@ fn a_face_of_ten_million_sides_is_refused() {
 }
 
 #[test]
-fn corners_without_texture_coordinates_among_others_cost_the_channel_and_a_warning() {
-    let scene = read(format!("{TRIANGLE}vt 0 0\nf 1/1 2/1 3/1\nf 3/1 2 1/1\n")).unwrap();
-    assert_eq!(scene.meshes[0].uv, None);
-    let text = "a corner without vt, where others have one: no texture coordinates are used";
-    assert_eq!(scene.warnings.len(), 1);
-    assert_eq!((scene.warnings[0].line, scene.warnings[0].text.as_str()), (Some(6), text));
+fn corners_without_texture_coordinates_among_others_are_refused() {
+    let expected = "line 6: found a corner without vt, expected one at every corner of every face, or at none";
+    assert_refused(format!("{TRIANGLE}vt 0 0\nf 1/1 2/1 3/1\nf 3/1 2 1/1\n"), expected);
+    assert_refused(format!("{TRIANGLE}vt 0 0\nf 1/1 2/1 3/1\nf 3 2 1\n"), expected);
 }
 
 #[test]
 fn texture_indices_without_any_texture_coordinates_are_ignored_with_a_warning() {
     let scene = read(format!("{TRIANGLE}f 1/1/1 2/2/2 3/3/3\n")).unwrap();
-    assert_eq!(scene.meshes[0].uv, None);
+    assert_eq!(scene.meshes[0].control_mesh.face_varying, []);
     assert_eq!(scene.warnings[0].to_string(), "faces name vt indices but there are no vt lines: ignored");
 }
 

@@ -10,7 +10,7 @@ fn cube_is_read_as_it_stands() {
     assert_eq!(mesh.control_mesh.positions[5], [1.0, 1.0, -1.0]);
     assert_eq!(mesh.control_mesh.face_sizes, [4; 6]);
     assert_eq!(mesh.control_mesh.face_vertices[4..8], [2, 3, 5, 4]);
-    assert_eq!(mesh.uv, None);
+    assert_eq!(mesh.control_mesh.face_varying, []);
     mesh.control_mesh.validate().unwrap();
 }
 
@@ -82,17 +82,19 @@ fn faces_may_come_before_their_vertices() {
 fn corners_may_have_texture_coordinates_and_normals() {
     for face in ["f 1/1 2/2 3/3", "f 1/1/1 2/2/2 3/3/9", "f 1/-3/-1 2/-2/ 3/-1"] {
         let mesh = mesh(format!("{TRIANGLE}vt 0.25\nvt 0.5 0.75\nvt 1 1 0\n{face}\n"));
-        let uv = mesh.uv.expect(face);
+        let uv = &mesh.control_mesh.face_varying[0];
+        assert_eq!(uv.name, "st");
         assert_eq!(uv.values, [[0.25, 0.0], [0.5, 0.75], [1.0, 1.0]]);
         assert_eq!(uv.indices, [0, 1, 2]);
     }
-    assert_eq!(mesh(format!("{TRIANGLE}vt 0 0\nf 1//1 2//1 3//1\n")).uv, None);
+    assert_eq!(mesh(format!("{TRIANGLE}vt 0 0\nf 1//1 2//1 3//1\n")).control_mesh.face_varying, []);
 }
 
 #[test]
 fn texture_coordinates_are_indexed_apart_from_vertices() {
-    let uv = mesh(format!("{TRIANGLE}vt 0 0\nvt 1 0\nvt 0 1\nf 1/3 2/3 3/1\n")).uv.unwrap();
-    assert_eq!((uv.values.len(), uv.indices), (3, vec![2, 2, 0]));
+    let mesh = mesh(format!("{TRIANGLE}vt 0 0\nvt 1 0\nvt 0 1\nf 1/3 2/3 3/1\n"));
+    let uv = &mesh.control_mesh.face_varying[0];
+    assert_eq!((uv.values.len(), uv.indices.as_slice()), (3, [2, 2, 0].as_slice()));
 }
 
 #[test]

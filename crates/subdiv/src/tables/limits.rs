@@ -64,7 +64,7 @@ impl<'a> LimitPoints<'a> {
 
     /// The limit point at a corner (an outgoing half-edge) of a level.
     pub fn point(&mut self, k: u32, corner: u32) -> u32 {
-        let (k, corner) = if self.is_uniform { (k, corner) } else { self.first_of_chain(k, corner) };
+        let (k, corner) = self.place(k, corner);
         let level = &self.refinement.levels[k as usize];
         let vertex = level.origin(corner);
         let known = &mut self.levels[k as usize];
@@ -81,6 +81,11 @@ impl<'a> LimitPoints<'a> {
         }
         self.table.push_corner(level, corner, self.first_points[k as usize], &mut self.cache);
         point
+    }
+
+    /// The level on whose points the row of a corner stands, and the corner there.
+    pub fn place(&self, k: u32, corner: u32) -> (u32, u32) {
+        if self.is_uniform { (k, corner) } else { self.first_of_chain(k, corner) }
     }
 
     /// Whether the row of a corner is on the points of the next level.

@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::mesh::MAX_ELEMENTS;
 use crate::patch::{FillingQuad, RegularPatch};
 use crate::stencil::StencilRow;
-use crate::tables::{Border, IrregularFace, LevelPoints, PatchSeams, Tables};
+use crate::tables::{Border, FaceVaryingTable, IrregularFace, LevelPoints, PatchSeams, Tables};
 use crate::topology::NONE;
 
 /// Where a mesh lies in tables.
@@ -61,6 +61,9 @@ impl Tables {
     /// The tables of several meshes as one, and where each mesh lies in them. A level has as many dispatches as the mesh
     /// with the most; a mesh with fewer is in the last ones. One part stays as it is.
     ///
+    /// Face-varying channels are merged by their number: channel i of all meshes becomes channel i, under the first mesh'
+    /// name of it. What a mesh without it has instead are indices of [`NONE`].
+    ///
     /// Fails where indices would not fit.
     ///
     /// # Panics
@@ -101,6 +104,9 @@ impl Tables {
             }
             merged.levels[k].edits = first_edit..merged.edits.len() as u32;
         }
+        let channel_count = parts.iter().map(|part| part.face_varying.len()).max().unwrap_or(0);
+        let channels = (0..channel_count).map(|channel| FaceVaryingTable::merged(&parts, channel, &meshes));
+        merged.face_varying = channels.collect();
         Ok((merged, meshes))
     }
 
@@ -118,7 +124,8 @@ impl Tables {
             self.slots.rings.indices.len(),
             self.slots.neighbours.indices.len(),
         ];
-        counts.into_iter().max().unwrap_or(0) as u64
+        let values = self.face_varying.iter().map(|table| table.values.len());
+        counts.into_iter().chain(values).max().unwrap_or(0) as u64
     }
 
     /// Gives every level of points its place. The rows of a level's last dispatch come first, as in one mesh.

@@ -3,6 +3,7 @@
 //! Points of all levels live in one array, the cage's first. Everything here depends on connectivity alone and costs
 //! O(irregular faces x depth); nothing is composed down to the cage.
 
+mod face_varying;
 mod irregular;
 mod limits;
 mod lists;
@@ -21,6 +22,7 @@ use crate::refine::Refinement;
 use crate::stencil::{SharedWeights, StencilTable, has_large_faces};
 
 pub use crate::selection::PatchCounts;
+pub use face_varying::{FaceVaryingEvaluator, FaceVaryingPatch, FaceVaryingTable};
 pub use irregular::IrregularFace;
 pub use lists::IndexLists;
 pub use merge::MeshRanges;
@@ -71,6 +73,8 @@ pub struct Tables {
     pub slots: DensitySlots,
     /// The faces of the last level of uniform refinement; else none.
     pub filling: Vec<FillingQuad>,
+    /// The values of face-varying channels, refined to the end.
+    pub face_varying: Vec<FaceVaryingTable>,
     /// No irregular face of this level is refined, unless it is forced.
     pub max_level: u32,
     /// The deepest level.
@@ -107,6 +111,7 @@ impl Tables {
             tables.slots = DensitySlots::new(&refinement.levels[0], &refinement.irregular_faces[0]);
             irregular::add_faces(&mut tables, refinement);
         }
+        tables.face_varying = face_varying::tables(&tables, refinement);
         tables
     }
 
