@@ -3,6 +3,7 @@ use std::fmt;
 
 use planish_subdiv::mesh::ControlMesh;
 
+use crate::displacement::DisplacementRequest;
 use crate::error::name_list;
 use crate::{Bounds, Camera, CameraPath, Error, Instance};
 
@@ -33,6 +34,8 @@ pub struct Mesh {
     pub control_mesh: ControlMesh,
     /// Texture coordinates, when every corner of every face has one.
     pub uv: Option<FaceVaryingChannel>,
+    /// The displacement map that a scene file asks for; [`crate::displacement::load_displacement`] reads it.
+    pub displacement: Option<DisplacementRequest>,
 }
 
 /// Values that belong to the corners of faces: a vertex may have a different one in each of its faces.

@@ -104,7 +104,8 @@ impl Reader {
             ..ControlMesh::default()
         };
         apply::apply(&self.tags, &face_map, &mut control_mesh, &mut self.warnings)?;
-        let mesh = Mesh { name: self.object_name.unwrap_or_else(|| name.to_owned()), control_mesh, uv };
+        let mesh =
+            Mesh { name: self.object_name.unwrap_or_else(|| name.to_owned()), control_mesh, uv, displacement: None };
         Ok((mesh, self.warnings.into_vec()))
     }
 
