@@ -12,7 +12,10 @@ use planish_render::{Density, SurfaceMethod};
 
 use crate::aov::AovList;
 use crate::frames::FrameRange;
-use crate::names::{CreasePatchesName, LodName, MethodName, SchemeName, SpacingName, ViewName, name_of};
+use crate::names::{
+    CreasePatchesName, DisplacementKindName, DisplacementLayoutName, LodName, MethodName, SchemeName, SpacingName,
+    ViewName, name_of,
+};
 use crate::values::{self, FrameRate, MAX_LEVEL};
 
 /// Level that irregularities are isolated to at most.
@@ -71,6 +74,8 @@ pub struct RenderArguments {
     #[command(flatten)]
     pub surface: SurfaceArguments,
     #[command(flatten)]
+    pub displacement: DisplacementArguments,
+    #[command(flatten)]
     pub view: ViewArguments,
     /// Samples a pixel, averaged
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = RangedU64ValueParser::<u32>::new().range(1..=MAX_SAMPLES))]
@@ -97,6 +102,8 @@ pub struct DumpArguments {
     pub output: PathBuf,
     #[command(flatten)]
     pub surface: SurfaceArguments,
+    #[command(flatten)]
+    pub displacement: DisplacementArguments,
     #[command(flatten)]
     pub view: ViewArguments,
     #[command(flatten)]
@@ -186,6 +193,8 @@ pub struct BenchArguments {
     #[arg(long, value_name = "DIR", env = "PLANISH_ORACLE_DIR")]
     pub peer: Option<PathBuf>,
     #[command(flatten)]
+    pub displacement: DisplacementArguments,
+    #[command(flatten)]
     pub device: DeviceArguments,
 }
 
@@ -230,12 +239,6 @@ pub struct SurfaceArguments {
     /// Trade bitwise equal seams for speed
     #[arg(long)]
     pub no_watertight: bool,
-    /// Scalar map over the mesh's UVs, along the normal
-    #[arg(long, value_name = "FILE")]
-    pub displacement: Option<PathBuf>,
-    /// Factor on the map's values
-    #[arg(long, value_name = "S", requires = "displacement", allow_hyphen_values = true)]
-    pub displacement_scale: Option<f32>,
 }
 
 impl SurfaceArguments {
@@ -251,9 +254,6 @@ impl SurfaceArguments {
 
     /// Refuses what does not exist yet.
     pub fn check_available(&self) -> Result<()> {
-        if self.displacement.is_some() {
-            bail!("displacement is not available yet");
-        }
         match self.scheme {
             None | Some(SchemeName::CatmullClark) => Ok(()),
             Some(other) => bail!("scheme {} is not available yet (available: catmull-clark)", name_of(other)),
@@ -273,6 +273,26 @@ impl SurfaceArguments {
     pub fn max_level(&self) -> u32 {
         self.asked_max_level.unwrap_or(DEFAULT_MAX_LEVEL)
     }
+}
+
+/// A displacement map for all meshes instead of the scene's, or what is different with the scene's.
+#[derive(Debug, Default, Args)]
+pub struct DisplacementArguments {
+    /// Displacement map, .exr, .png or .tiff, instead of the scene's; <UDIM> in its name stands for the tile
+    #[arg(long = "displacement", value_name = "FILE")]
+    pub file: Option<PathBuf>,
+    /// A texel displaces by S * (value - M) [default: 1]
+    #[arg(long = "displacement-scale", value_name = "S", value_parser = values::finite, allow_hyphen_values = true)]
+    pub scale: Option<f64>,
+    /// Value that does not displace [default: 0]
+    #[arg(long = "displacement-midpoint", value_name = "M", value_parser = values::finite, allow_hyphen_values = true)]
+    pub midpoint: Option<f64>,
+    /// One number along the normal, or an offset x, y, z in the mesh's space [default: scalar]
+    #[arg(long = "displacement-kind", value_enum)]
+    pub kind: Option<DisplacementKindName>,
+    /// Over texture coordinates, or an atlas of one tile a Ptex face [default: uv]
+    #[arg(long = "displacement-layout", value_enum)]
+    pub layout: Option<DisplacementLayoutName>,
 }
 
 /// From where the scene is seen.

@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use planish_render::ObjectDesc;
+use planish_scene::displacement::DisplacementMap;
 use planish_scene::{Camera, LoadOptions, Scene, load};
 use planish_subdiv::ControlMesh;
 use planish_subdiv::mesh::Creasing;
@@ -13,9 +14,10 @@ use planish_subdiv::rules::{VertexRule, is_semi_sharp, vertex_rule};
 use planish_subdiv::topology::{Level, NONE};
 use serde::Serialize;
 
-use crate::args::ViewArguments;
+use crate::args::{DisplacementArguments, ViewArguments};
 use crate::console::Console;
 use crate::culling::backs_are_hidden;
+use crate::displacement::load_maps;
 
 /// Vertical field of view of a camera given by its eye, in degrees.
 const DEFAULT_FOV: f32 = 45.0;
@@ -28,8 +30,10 @@ pub struct Cage {
     mesh_facts: Vec<MeshFacts>,
     /// What all of them are like together.
     pub facts: MeshFacts,
-    /// How long reading the file took, in milliseconds.
+    /// How long reading the files took, in milliseconds.
     pub load_ms: f64,
+    /// One a mesh that is displaced, once [`Self::displace`] has read them.
+    displacements: Vec<Option<DisplacementMap>>,
 }
 
 impl Cage {
@@ -45,7 +49,21 @@ impl Cage {
         let facts = scene.meshes.iter().map(|mesh| MeshFacts::new(&mesh.control_mesh)).collect::<Result<Vec<_>>>();
         let facts = facts.with_context(named)?;
         let sum = facts.iter().fold(MeshFacts::default(), MeshFacts::with);
-        Ok(Self { path: path.to_owned(), scene, mesh_facts: facts, facts: sum, load_ms })
+        Ok(Self { path: path.to_owned(), scene, mesh_facts: facts, facts: sum, load_ms, displacements: Vec::new() })
+    }
+
+    /// Reads the displacement maps that the scene or the command line asks for.
+    pub fn displace(&mut self, arguments: &DisplacementArguments, console: &Console) -> Result<()> {
+        let start = Instant::now();
+        arguments.apply(&self.path, &mut self.scene)?;
+        self.displacements = load_maps(&self.path, &self.scene, console)?;
+        self.load_ms += milliseconds(start);
+        Ok(())
+    }
+
+    /// The displacement map of each mesh, if it has one; empty until they are read.
+    pub fn displacements(&self) -> &[Option<DisplacementMap>] {
+        &self.displacements
     }
 
     /// The file, as it was named.

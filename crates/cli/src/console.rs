@@ -83,6 +83,18 @@ pub fn print_output(text: &str) -> anyhow::Result<()> {
     stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).context("cannot write to standard output")
 }
 
+/// What a command line asks for that makes no sense for the scene it names.
+#[derive(Debug)]
+pub struct WrongUsage(pub String);
+
+impl Display for WrongUsage {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(formatter, "{} (planish --help explains)", self.0)
+    }
+}
+
+impl std::error::Error for WrongUsage {}
+
 /// Whether a command failed only because the reader of its output has gone away.
 pub fn is_closed_output(error: &anyhow::Error) -> bool {
     error.downcast_ref::<std::io::Error>().is_some_and(|error| error.kind() == ErrorKind::BrokenPipe)

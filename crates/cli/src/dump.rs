@@ -21,7 +21,8 @@ const QUEUED_PARTS: usize = 2;
 
 /// Runs the command.
 pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
-    let cage = Cage::load(&arguments.scene.path, arguments.scene.repair, console)?;
+    let mut cage = Cage::load(&arguments.scene.path, arguments.scene.repair, console)?;
+    cage.displace(&arguments.displacement, console)?;
     if cage.has_uv() {
         console.explain(format_args!("the dump has no s and t: face-varying channels are not evaluated yet"));
     }

@@ -6,6 +6,7 @@
 //! | `names`, `values`, `frames`, `aov` | what a flag's value means |
 //! | `console` | standard output and standard error |
 //! | `cage` | a scene file, and what its mesh is like |
+//! | `displacement` | the displacement maps of a scene's meshes |
 //! | `offline` | device, surface and passes: the machinery that the commands share |
 //! | `image` | a frame's images, read back |
 //! | `stats` | the JSON of `--stats` |
@@ -18,6 +19,7 @@ mod cage;
 mod console;
 mod culling;
 mod devices;
+mod displacement;
 mod dump;
 mod frames;
 mod image;
@@ -69,7 +71,7 @@ fn main() -> ExitCode {
         Err(error) => {
             console.end_progress();
             console::print_error(&console::error_text(&error));
-            ExitCode::from(FAILED)
+            ExitCode::from(if error.is::<console::WrongUsage>() { WRONG_USAGE } else { FAILED })
         }
     }
 }

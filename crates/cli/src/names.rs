@@ -2,6 +2,7 @@
 
 use clap::ValueEnum;
 use planish_render::{Spacing, View};
+use planish_scene::displacement::{DisplacementKind, DisplacementLayout};
 use planish_subdiv::refine::CreasePatches;
 
 /// Surface methods by name.
@@ -66,6 +67,42 @@ impl From<CreasePatchesName> for CreasePatches {
             CreasePatchesName::None => Self::None,
             CreasePatchesName::Infinite => Self::Infinite,
             CreasePatchesName::Single => Self::Single,
+        }
+    }
+}
+
+/// What a texel of a displacement map says, by name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum DisplacementKindName {
+    /// A distance along the normal
+    Scalar,
+    /// An offset in the mesh's space
+    Vector,
+}
+
+impl From<DisplacementKindName> for DisplacementKind {
+    fn from(name: DisplacementKindName) -> Self {
+        match name {
+            DisplacementKindName::Scalar => Self::Scalar,
+            DisplacementKindName::Vector => Self::Vector,
+        }
+    }
+}
+
+/// What leads to a texel of a displacement map, by name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum DisplacementLayoutName {
+    /// Texture coordinates
+    Uv,
+    /// Ptex faces
+    Faces,
+}
+
+impl From<DisplacementLayoutName> for DisplacementLayout {
+    fn from(name: DisplacementLayoutName) -> Self {
+        match name {
+            DisplacementLayoutName::Uv => Self::Uv,
+            DisplacementLayoutName::Faces => Self::Faces,
         }
     }
 }

@@ -186,6 +186,10 @@ impl Session {
         if plan.desc.method == SurfaceMethod::Uniform && (plan.objects.len() != 1 || plan.needs.placed) {
             bail!("{}: method uniform draws one mesh where it is: expected no instances", named());
         }
+        // Where displacement maps meet the renderer: `cage.displacements()` has one a mesh, ready for upload.
+        if cage.displacements().iter().any(Option::is_some) {
+            bail!("{}: displacement maps are read but not drawn yet", named());
+        }
         let made = preprocess(&cage.meshes(), &plan.desc).with_context(named)?;
         let surface = Surface::new(device, &cage.meshes(), &plan.objects, plan.desc, made).with_context(named)?;
         let start = Instant::now();

@@ -17,7 +17,8 @@ use crate::stats::{FrameStats, Stats, StatsOutput};
 
 /// Runs the command.
 pub fn run(arguments: &RenderArguments, console: &Console) -> Result<()> {
-    let cage = Cage::load(&arguments.scene.path, arguments.scene.repair, console)?;
+    let mut cage = Cage::load(&arguments.scene.path, arguments.scene.repair, console)?;
+    cage.displace(&arguments.displacement, console)?;
     let aovs = arguments.aov.available()?;
     check_outputs(arguments, aovs, console)?;
     let stats_output = StatsOutput(arguments.frames.stats.as_ref());

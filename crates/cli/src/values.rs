@@ -42,6 +42,11 @@ pub fn field_of_view(text: &str) -> Result<f32, String> {
     number(text, |degrees| degrees > 0.0 && degrees < 180.0, "more than 0 and less than 180 degrees")
 }
 
+/// A number.
+pub fn finite(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "expected a finite number".to_owned())
+}
+
 fn number(text: &str, is_good: impl Fn(f32) -> bool, expected: &str) -> Result<f32, String> {
     let good = |number: &f32| number.is_finite() && is_good(*number);
     text.parse().ok().filter(good).ok_or_else(|| format!("expected {expected}"))
@@ -114,6 +119,8 @@ mod tests {
     fn numbers_out_of_range_are_refused() {
         assert_eq!(tess_factor("13.7"), Ok(13.7));
         assert_eq!(edge_pixels("0.5"), Ok(0.5));
+        assert_eq!(finite("-0.25"), Ok(-0.25));
+        assert!(["nan", "inf", "-inf", "1e999", "x", ""].iter().all(|bad| finite(bad).is_err()));
         assert_eq!(field_of_view("179.5"), Ok(179.5));
         assert!(["0.99", "-1", "nan", "inf", "x"].iter().all(|bad| tess_factor(bad).is_err()));
         assert!(["0", "-4", "nan", "inf"].iter().all(|bad| edge_pixels(bad).is_err()));

@@ -60,6 +60,16 @@ pub enum Error {
         /// What is wrong with the mesh' file.
         source: Box<Error>,
     },
+    /// A displacement map that cannot be read, or does not fit its mesh.
+    #[error("{}: found {found}, expected {expected}", .path.display())]
+    Displacement {
+        /// The map's file.
+        path: PathBuf,
+        /// What is there.
+        found: String,
+        /// What should be there.
+        expected: String,
+    },
     /// A camera that sees nothing.
     #[error("camera: found {found}, expected {expected}")]
     Camera {
@@ -86,6 +96,9 @@ pub enum Error {
     },
 }
 
+/// Longest part of a message that comes from a file, in characters.
+const MESSAGE_LIMIT: usize = 200;
+
 /// Most names that a message lists.
 const NAMES_SHOWN: usize = 10;
 
@@ -98,6 +111,20 @@ pub(crate) fn name_list<'a>(names: impl Iterator<Item = &'a str>, kind: &str) ->
         (names, 0) => format!("one of {}", names.join(", ")),
         (names, others) => format!("one of {} and {others} others", names.join(", ")),
     }
+}
+
+/// A message on one line and of bounded length, whatever names and strings of the file it quotes.
+pub(crate) fn shown(message: &str) -> String {
+    let mut escaped = String::new();
+    for character in message.chars().take(MESSAGE_LIMIT) {
+        if character.is_control() {
+            escaped.extend(character.escape_default());
+        } else {
+            escaped.push(character);
+        }
+    }
+    let cut = if message.chars().nth(MESSAGE_LIMIT).is_some() { ".." } else { "" };
+    format!("{escaped}{cut}")
 }
 
 fn line_prefix(line: &Option<u32>) -> String {

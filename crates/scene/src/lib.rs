@@ -14,10 +14,12 @@
 //! | `path` | a camera that moves from frame to frame |
 //! | `bounds` | a bounding box |
 //! | `obj` | the OBJ reader, with OpenSubdiv's subdivision tags |
+//! | `displacement` | displacement maps, ready for upload |
 //! | `json` | the reader of our own scene files, which place meshes of OBJ files |
 //! | `error` | what can go wrong |
 mod bounds;
 mod camera;
+pub mod displacement;
 mod error;
 mod instance;
 mod json;

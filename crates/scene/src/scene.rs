@@ -3,6 +3,7 @@ use std::fmt;
 
 use planish_subdiv::mesh::ControlMesh;
 
+use crate::displacement::DisplacementRequest;
 use crate::error::name_list;
 use crate::{Bounds, Camera, CameraPath, Error, Instance};
 
@@ -31,6 +32,8 @@ pub struct Mesh {
     pub name: String,
     /// The cage. Texture coordinates, when every corner of every face has one, are its face-varying channel `st`.
     pub control_mesh: ControlMesh,
+    /// The displacement map that a scene file asks for; [`crate::displacement::load_displacement`] reads it.
+    pub displacement: Option<DisplacementRequest>,
 }
 
 /// Something odd in a file that did not keep it from being read.

@@ -110,7 +110,8 @@ impl Bench<'_> {
     fn scenes<R: Row>(&self, device: Option<&Device>, rows: impl Fn(&Cage) -> Result<Vec<R>>) -> Result<()> {
         let mut scenes = Vec::new();
         for path in &self.arguments.scenes {
-            let cage = Cage::load(path, self.arguments.repair, self.console)?;
+            let mut cage = Cage::load(path, self.arguments.repair, self.console)?;
+            cage.displace(&self.arguments.displacement, self.console)?;
             let scene = SceneReport {
                 scene: path.display().to_string(),
                 vertices: cage.facts.vertices,

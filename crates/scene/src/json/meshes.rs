@@ -1,9 +1,10 @@
-//! Names to meshes. Files are read once however many names they have.
+//! Names to meshes. Files are read once however many names they have, unless they are displaced in different ways.
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use super::Fault;
 use super::text::MeshText;
+use super::{Fault, displacement};
+use crate::displacement::DisplacementRequest;
 use crate::error::name_list;
 use crate::obj::{Warnings, quoted};
 use crate::{Bounds, Error, Instance, LoadOptions, Mesh, Warning};
@@ -23,22 +24,36 @@ pub struct Meshes {
 /// Reads the OBJ files that the scene file at `scene` names.
 pub fn read(scene: &Path, texts: &[MeshText], options: &LoadOptions) -> Result<Meshes, Error> {
     let mut meshes = Meshes::default();
-    let mut index_of_file: HashMap<PathBuf, usize> = HashMap::new();
+    let mut meshes_of_file: HashMap<PathBuf, Vec<usize>> = HashMap::new();
     for (element, text) in texts.iter().enumerate() {
-        meshes.check(text).map_err(|fault| {
+        let misplaced = |fault: Fault| {
             let Fault { place, found, expected } = fault.within("meshes", element);
             Error::Misplaced { path: scene.to_owned(), place, found, expected }
-        })?;
+        };
+        meshes.check(text).map_err(misplaced)?;
+        let displacement = text.displacement.as_ref().map(|text| displacement::request(scene, text)).transpose();
+        let displacement = displacement.map_err(misplaced)?;
         let file = scene.with_file_name(&text.file);
         // Two spellings of one file's path are one file.
         let key = std::fs::canonicalize(&file).unwrap_or_else(|_| file.clone());
-        let known = index_of_file.get(&key).copied();
-        let index = known.map_or_else(|| meshes.add(text, &file, options), Ok).map_err(|source| Error::Mesh {
-            path: scene.to_owned(),
-            place: format!("meshes[{element}].file"),
-            source: Box::new(source),
-        })?;
-        index_of_file.insert(key, index);
+        let of_file = meshes_of_file.entry(key).or_default();
+        let known = of_file.iter().copied().find(|&index| meshes.meshes[index].displacement == displacement);
+        let index = match known {
+            Some(index) => index,
+            None => {
+                let added = match of_file.first() {
+                    Some(&read) => Ok(meshes.add_again(read, text, displacement)),
+                    None => meshes.add(text, &file, displacement, options),
+                };
+                let index = added.map_err(|source| Error::Mesh {
+                    path: scene.to_owned(),
+                    place: format!("meshes[{element}].file"),
+                    source: Box::new(source),
+                })?;
+                of_file.push(index);
+                index
+            }
+        };
         meshes.names.push(text.name.clone());
         meshes.index_of.insert(text.name.clone(), index);
     }
@@ -82,14 +97,28 @@ impl Meshes {
     }
 
     /// Reads an OBJ file and returns its mesh' index.
-    fn add(&mut self, text: &MeshText, file: &Path, options: &LoadOptions) -> Result<usize, Error> {
+    fn add(
+        &mut self,
+        text: &MeshText,
+        file: &Path,
+        displacement: Option<DisplacementRequest>,
+        options: &LoadOptions,
+    ) -> Result<usize, Error> {
         let (mut mesh, warnings) = crate::read_mesh(file, &crate::obj_bytes(file)?, options)?;
         for warning in warnings {
             self.warnings.push(None, format!("{}: {warning}", file.display()));
         }
         mesh.name.clone_from(&text.name);
+        mesh.displacement = displacement;
         self.bounds.push(mesh.bounds().expect("an OBJ file without vertices is refused"));
         self.meshes.push(mesh);
         Ok(self.meshes.len() - 1)
+    }
+
+    /// Adds a mesh that has been read, displaced in another way.
+    fn add_again(&mut self, read: usize, text: &MeshText, displacement: Option<DisplacementRequest>) -> usize {
+        self.bounds.push(self.bounds[read]);
+        self.meshes.push(Mesh { name: text.name.clone(), displacement, ..self.meshes[read].clone() });
+        self.meshes.len() - 1
     }
 }

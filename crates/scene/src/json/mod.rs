@@ -4,10 +4,12 @@
 //! |---|---|
 //! | `text` | the file as it is written, and what is wrong with its form |
 //! | `meshes` | names to meshes, each OBJ file read once |
+//! | `displacement` | the displacement map that a mesh asks for |
 //! | `instances` | where meshes stand, arrays included |
 //! | `transform` | the ways to write a transform, and which are refused |
 //! | `cameras` | cameras and camera paths |
 mod cameras;
+mod displacement;
 mod instances;
 mod meshes;
 mod text;

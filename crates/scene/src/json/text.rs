@@ -3,9 +3,7 @@ use serde::Deserialize;
 use serde_json::error::Category;
 
 use super::Fault;
-
-/// Longest part of a message that comes from the file, in characters.
-const MESSAGE_LIMIT: usize = 200;
+use crate::error::shown;
 
 /// The byte order mark with which some editors begin UTF-8 files.
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
@@ -32,6 +30,35 @@ pub struct MeshText {
     pub name: String,
     /// An OBJ file, looked for from the scene file's folder.
     pub file: String,
+    pub displacement: Option<DisplacementText>,
+}
+
+/// A displacement map.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DisplacementText {
+    /// An image, looked for from the scene file's folder.
+    pub file: String,
+    pub scale: Option<f64>,
+    pub midpoint: Option<f64>,
+    pub kind: Option<KindText>,
+    pub layout: Option<LayoutText>,
+}
+
+/// What a texel of a displacement map says.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum KindText {
+    Scalar,
+    Vector,
+}
+
+/// What leads to a texel of a displacement map.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LayoutText {
+    Uv,
+    Faces,
 }
 
 /// Where a mesh stands: scaled, then turned, then moved; or a matrix alone.
@@ -131,18 +158,4 @@ fn malformed(error: &serde_json::Error) -> Fault {
         Some(("duplicate", field)) => Fault::new(place, format!("field {} twice", shown(field)), "it once"),
         _ => Fault::new(place, shown(message), "a scene file"),
     }
-}
-
-/// A message on one line and of bounded length, whatever names and strings of the file it quotes.
-fn shown(message: &str) -> String {
-    let mut escaped = String::new();
-    for character in message.chars().take(MESSAGE_LIMIT) {
-        if character.is_control() {
-            escaped.extend(character.escape_default());
-        } else {
-            escaped.push(character);
-        }
-    }
-    let cut = if message.chars().nth(MESSAGE_LIMIT).is_some() { ".." } else { "" };
-    format!("{escaped}{cut}")
 }

@@ -108,7 +108,8 @@ impl Reader {
             ..ControlMesh::default()
         };
         apply::apply(&self.tags, &face_map, &mut control_mesh, &mut self.warnings)?;
-        let mesh = Mesh { name: self.object_name.unwrap_or_else(|| name.to_owned()), control_mesh };
+        let name = self.object_name.unwrap_or_else(|| name.to_owned());
+        let mesh = Mesh { name, control_mesh, displacement: None };
         Ok((mesh, self.warnings.into_vec()))
     }
 
