@@ -1,5 +1,6 @@
 //! Wrong usage, requests that cannot be met and devices that cannot run planish: one line each.
 
+use std::io::Cursor;
 use std::process::{Command, Stdio};
 
 use planish_tests::folder::{contents, temporary};
@@ -45,6 +46,12 @@ fn wrong_usage_ends_with_status_2_and_one_line() {
         "render a.obj -o a.exr --frames 3-1",
         "render a.obj -o a.exr --repeat 0",
         "info a.obj --device 0",
+        "info a.obj --displacement a.exr",
+        "render a.obj -o a.exr --displacement",
+        "render a.obj -o a.exr --displacement a.exr --displacement-scale nan",
+        "render a.obj -o a.exr --displacement a.exr --displacement-midpoint inf",
+        "render a.obj -o a.exr --displacement a.exr --displacement-kind normal",
+        "render a.obj -o a.exr --displacement a.exr --displacement-layout ptex",
     ];
     for line in lines {
         let outcome = Planish::new(line).run();
@@ -75,6 +82,70 @@ fn requests_that_cannot_be_met_are_refused_with_one_line() {
         if is_told { Ok(()) } else { Err(outcome.told(&format!("expected the line to say {words:?}"))) }
     });
     assert!(contents(folder.path()).is_empty(), "{:?}", contents(folder.path()).keys());
+}
+
+#[test]
+fn details_of_a_displacement_map_that_there_is_not_are_wrong_usage() {
+    let folder = temporary();
+    for (flags, flag) in [
+        ("--displacement-scale 2", "--displacement-scale"),
+        ("--displacement-midpoint -0.5", "--displacement-midpoint"),
+        ("--displacement-kind vector", "--displacement-kind"),
+        ("--displacement-layout faces", "--displacement-layout"),
+    ] {
+        for command in [
+            Planish::render(&scene("cube"), &folder.path().join("out.exr")),
+            Planish::dump(&scene("cube"), &folder.path().join("out.ply")),
+            Planish::new("bench --cpu").path(&scene("cube")),
+        ] {
+            let outcome = command.flags(flags).run();
+            let message = outcome.one_error(WRONG_USAGE).unwrap();
+            assert!(message.contains(&format!("{flag} needs --displacement")), "{message}");
+        }
+    }
+    assert!(contents(folder.path()).is_empty());
+}
+
+#[test]
+fn displacement_maps_that_cannot_be_used_are_refused_with_one_line() {
+    let folder = temporary();
+    let inputs = temporary();
+    let file = |name: &str, content: &[u8]| {
+        let path = inputs.path().join(name);
+        std::fs::write(&path, content).unwrap();
+        path
+    };
+    let quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1.5 0\nvt 1.5 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
+    let quad = file("quad.obj", quad.as_bytes());
+    let mut gray = Vec::new();
+    image::GrayImage::new(3, 3).write_to(&mut Cursor::new(&mut gray), image::ImageFormat::Png).unwrap();
+    let (good, tile) = (file("good.png", &gray), file("map.1001.png", &gray));
+    let mut claiming = gray.clone();
+    claiming[16..24].copy_from_slice(&[0, 0x0f, 0x42, 0x40, 0, 0x0f, 0x42, 0x40]);
+    let cases = [
+        (quad.clone(), file("text.png", b"v 0 0 0"), "", "text.png: found no PNG image"),
+        (quad.clone(), file("cut.png", &gray[..gray.len() / 2]), "", "cut.png: found no PNG image"),
+        (quad.clone(), file("huge.png", &claiming), "", "huge.png: found "),
+        (quad.clone(), file("a.jpg", &gray), "", "a.jpg: found a file of unknown format, expected a displacement map"),
+        (quad.clone(), inputs.path().to_owned(), "", "found a directory, expected a displacement map"),
+        (quad.clone(), inputs.path().join("none.exr"), "", "none.exr: found no file that can be read"),
+        (quad.clone(), tile.with_file_name("map.<UDIM>.png"), "", "no file for tile 1002, which UV (1.5, 0) uses"),
+        (quad.clone(), good.clone(), "--displacement-kind vector", "channels R, G and B"),
+        (scene("cube"), good.clone(), "", "without texture coordinates"),
+        (
+            scene("cube"),
+            good.clone(),
+            "--displacement-layout faces",
+            "an atlas of 3 x 3 texels, expected rows of 6 tiles",
+        ),
+    ];
+    check_all(&cases, |(mesh, map, flags, words)| {
+        let out = folder.path().join("out.exr");
+        let outcome = Planish::render(mesh, &out).flags(flags).flags("--displacement").path(map).run();
+        let message = outcome.one_error(FAILED)?;
+        if message.contains(words) { Ok(()) } else { Err(outcome.told(&format!("expected the line to say {words:?}"))) }
+    });
+    assert!(contents(folder.path()).is_empty());
 }
 
 #[test]

@@ -63,7 +63,10 @@ fn decode_guarded(source: Source, decode: Decode, fold: &mut TexelFold) -> Resul
 
 /// A decoder's refusal as a fault.
 pub fn undecodable(format: &str, reason: impl std::fmt::Display) -> Fault {
-    Fault::whole(format!("no intact {format} image ({})", shown(&reason.to_string())), format!("an {format} image"))
+    Fault::whole(
+        format!("no {format} image that can be decoded ({})", shown(&reason.to_string())),
+        format!("an intact {format} file"),
+    )
 }
 
 /// A vector's channels are missing.

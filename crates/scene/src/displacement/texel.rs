@@ -2,7 +2,7 @@
 use super::{DisplacementKind, DisplacementRequest};
 
 /// Longest displacement along an axis: as the largest coordinate of a cage.
-const MAX_DISPLACEMENT: f64 = planish_subdiv::mesh::MAX_COORDINATE as f64;
+const MAX_DISPLACEMENT: f32 = planish_subdiv::mesh::MAX_COORDINATE;
 
 /// Folds scale and midpoint into texels, in double: a shader has only to filter.
 pub struct TexelFold {
@@ -20,11 +20,11 @@ impl TexelFold {
 
     /// Appends the displacement of a texel of raw values: one or three, as the kind has it.
     pub fn push(&mut self, raw: &[f64], to: &mut Vec<f32>) {
-        let displacement = |value: &f64| self.scale * (value - self.midpoint);
+        // Adding 0 makes -0 a 0: products and sums of texels then have no sign that depends on their order.
+        let displacement = |value: &f64| (self.scale * (value - self.midpoint)) as f32 + 0.0;
         let is_good = raw.iter().map(displacement).all(|value| value.abs() <= MAX_DISPLACEMENT);
         self.replaced += u64::from(!is_good);
-        // Adding 0 makes -0 a 0: products and sums of texels then have no sign that depends on their order.
-        to.extend(raw.iter().map(|value| if is_good { displacement(value) as f32 + 0.0 } else { 0.0 }));
+        to.extend(raw.iter().map(|value| if is_good { displacement(value) } else { 0.0 }));
     }
 }
 
