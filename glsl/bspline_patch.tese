@@ -6,6 +6,7 @@
 #include "shared/bspline.glsl"
 #include "shared/crease.glsl"
 #include "shared/seams.glsl"
+#include "shared/displacement.glsl"
 #include "shared/surface.glsl"
 
 layout(constant_id = 1) const bool TRANSITION = false;
@@ -25,6 +26,11 @@ layout(location = 7) patch in uvec4 piece_first;
 layout(location = 8) patch in uvec4 piece_last;
 layout(location = 9) patch in uvec2 patch_places; // of its seams, or NONE; of its object
 
+uint own_place()
+{
+    return patch_words.w & ~PATCH_MIRRORED;
+}
+
 void basis(Parameter u, Parameter v, uint crease, float sharpness, out precise vec4 nu, out precise vec4 du,
            out precise vec4 nv, out precise vec4 dv)
 {
@@ -43,6 +49,17 @@ void basis(Parameter u, Parameter v, uint crease, float sharpness, out precise v
 struct Evaluated {
     vec3 position;
     vec3 normal;
+    vec3 along_u; // tangents, times 12
+    vec3 along_v;
+    vec4 nu;      // the weights that they were evaluated with,
+    vec4 du;
+    vec4 nv;
+    vec4 dv;
+    uint place;   // in this patch,
+    Parameter u;  // at this point of it
+    Parameter v;
+    uint limit;   // the limit point that it is, or NONE
+    BorderPoint decider; // where surfaces are displaced: the patch that says where to, if it is another one
 };
 
 precise vec3 patch_position(vec3 p[16], vec4 nu, vec4 nv)
@@ -64,128 +81,236 @@ precise vec3 without_sign_of_zero(vec3 a)
     return result;
 }
 
-// Evaluates so that every patch at an edge or a corner gets the same bits.
+// What decides about a point on an edge: a patch along it, or the limit point that a corner is.
+void find_deciders(bvec4 is_on, Parameter u, Parameter v, out BorderPoint border, out uint border_edge, out uint limit)
+{
+    SeamTable seams = push.frame.v.scene.v.seams;
+    uint word = NONE;
+    limit = NONE;
+    border.place = NONE;
+    border_edge = NO_EDGE;
+    [[dont_unroll]] for (uint edge = 0u; edge < 4u; ++edge) {
+        uint found = is_on[edge] ? seams.v[patch_places.x].borders[edge] : NONE;
+        if (found != NONE) {
+            word = found;
+            border_edge = edge;
+        }
+        // Corner i lies between edge i - 1 and edge i.
+        if (is_on[edge] && is_on[(edge + 3u) & 3u]) {
+            limit = seams.v[patch_places.x].limits[edge];
+        }
+    }
+    if (word != NONE && limit == NONE) {
+        border = border_point(word, (border_edge & 1u) == 0u ? u : v);
+    }
+}
+
+// The control points around an edge of another patch; the others have no weight there.
+void border_points(BorderPoint border, inout vec3 p[16])
+{
+    Object object = push.frame.v.scene.v.objects.v[patch_places.y];
+    uint boundary = patch_boundary(push.patches.v[border.place].info);
+    [[dont_unroll]] for (uint i = 0u; i < 16u; ++i) {
+        p[i] = vec3(0.0);
+        if (is_beside(border.edge, i)) {
+            p[i] = to_world(object, control_point_of(push.patches, push.points, border.place, i, boundary));
+        }
+    }
+}
+
+// The point on edges without a surface across: boundaries and infinite creases. There the surface is the curve of the points along
+// the edge, whatever lies beside it.
+vec3 sharp_position(uint sharp_edges, BorderPoint border, vec4 nu, vec4 nv)
+{
+    uint edge = uint(findLSB(sharp_edges));
+    uint rest = sharp_edges & (sharp_edges - 1u);
+    if (rest != 0u) {
+        // Two of them meet in a corner that is interpolated: corner 0 lies between edges 3 and 0; else the higher edge begins there.
+        uint other = uint(findLSB(rest));
+        uint corner = edge == 0u && other == 3u ? 0u : other;
+        const uint PLACES[4] = uint[4](5u, 6u, 10u, 9u);
+        return control_point[PLACES[corner]];
+    }
+    vec3 q[4];
+    vec4 n = (edge & 1u) == 0u ? nu : nv;
+    [[dont_unroll]] for (uint i = 0u; i < 4u; ++i) {
+        q[i] = control_point[along_edge(edge, i)];
+    }
+    if (border.place != NONE) {
+        Object object = push.frame.v.scene.v.objects.v[patch_places.y];
+        uint boundary = patch_boundary(push.patches.v[border.place].info);
+        [[dont_unroll]] for (uint i = 0u; i < 4u; ++i) {
+            q[i] = to_world(object, control_point_of(push.patches, push.points, border.place, along_edge(border.edge, i), boundary));
+        }
+        Parameter along = (border.edge & 1u) == 0u ? border.u : border.v;
+        vec4 slope;
+        cubic_basis(along.t, along.s, n, slope);
+    }
+    return curve_position(q, n);
+}
+
+// Evaluates so that every patch at an edge or a corner gets the same bits. What few points need is in loops, not in branches: a
+// software driver runs the body of a branch that no thread takes, but not that of a loop.
 Evaluated evaluate_watertight(Parameter u, Parameter v, bvec4 is_on, PatchInfo info)
 {
+    Evaluated result;
     vec3 p[16];
     [[unroll]] for (int i = 0; i < 16; ++i) {
         p[i] = control_point[i];
     }
-    uint boundary = patch_boundary(info);
     uint crease = patch_crease(info);
     float sharpness = patch_sharpness;
-    // The edge of a coarser patch that this point lies on, and the point's place there.
-    BorderPoint coarse;
-    coarse.place = NONE;
-    uint limit = NONE;
-    uint border_edge = NO_EDGE;
-    // Loops, not branches: a software driver runs the body of a branch that no thread takes, but not that of a loop.
-    for (bool is_open = patch_places.x != NONE && any(is_on); is_open; is_open = false) {
-        SeamTable seams = push.frame.v.scene.v.seams;
-        uint border = NONE;
-        [[dont_unroll]] for (uint edge = 0u; edge < 4u; ++edge) {
-            uint found = is_on[edge] ? seams.v[patch_places.x].borders[edge] : NONE;
-            if (found != NONE) {
-                border = found;
-                border_edge = edge;
-            }
-            // Corner i lies between edge i - 1 and edge i.
-            if (is_on[edge] && is_on[(edge + 3u) & 3u]) {
-                limit = seams.v[patch_places.x].limits[edge];
-            }
-        }
-        if (border != NONE && limit == NONE) {
-            coarse = border_point(border, (border_edge & 1u) == 0u ? u : v);
-        }
-    }
-    bool is_sharp_border = coarse.place != NONE && (boundary >> border_edge & 1u) != 0u;
-    for (bool is_open = coarse.place != NONE && !is_sharp_border; is_open; is_open = false) {
-        Object object = push.frame.v.scene.v.objects.v[patch_places.y];
-        PatchInfo info = push.patches.v[coarse.place].info;
-        [[dont_unroll]] for (uint i = 0u; i < 16u; ++i) {
-            p[i] = vec3(0.0);
-            if (is_beside(coarse.edge, i)) {
-                p[i] = to_world(object, control_point_of(push.patches, push.points, coarse.place, i, patch_boundary(info)));
-            }
-        }
-        if (CREASE) {
-            crease = patch_crease(info);
-            sharpness = push.patches.v[coarse.place].sharpness;
-        }
-        u = coarse.u;
-        v = coarse.v;
-    }
-    vec4 nu;
-    vec4 du;
-    vec4 nv;
-    vec4 dv;
-    basis(u, v, crease, sharpness, nu, du, nv, dv);
-    vec3 position = patch_position(p, nu, nv);
-    vec3 normal = unit_normal(weigh_patch(p, du, nv), weigh_patch(p, nu, dv));
-    // On a boundary or an infinite crease the surface is the curve of the points along it, whatever lies beside.
     uint sharp_edges = 0u;
     [[unroll]] for (uint edge = 0u; edge < 4u; ++edge) {
-        sharp_edges |= is_on[edge] ? boundary & 1u << edge : 0u;
+        sharp_edges |= is_on[edge] ? patch_boundary(info) & 1u << edge : 0u;
     }
+    BorderPoint border;
+    border.place = NONE;
+    uint border_edge = NO_EDGE;
+    result.limit = NONE;
+    result.place = own_place();
+    for (bool is_open = patch_places.x != NONE && any(is_on); is_open; is_open = false) {
+        find_deciders(is_on, u, v, border, border_edge, result.limit);
+    }
+    bool is_sharp_border = border.place != NONE && (sharp_edges >> border_edge & 1u) != 0u;
+    for (bool is_open = border.place != NONE && !is_sharp_border; is_open; is_open = false) {
+        border_points(border, p);
+        if (CREASE) {
+            crease = patch_crease(push.patches.v[border.place].info);
+            sharpness = push.patches.v[border.place].sharpness;
+        }
+        result.place = border.place;
+        u = border.u;
+        v = border.v;
+    }
+    result.decider = border;
+    result.u = u;
+    result.v = v;
+    basis(u, v, crease, sharpness, result.nu, result.du, result.nv, result.dv);
+    result.position = patch_position(p, result.nu, result.nv);
+    result.along_u = weigh_patch(p, result.du, result.nv);
+    result.along_v = weigh_patch(p, result.nu, result.dv);
+    result.normal = without_sign_of_zero(unit_normal(result.along_u, result.along_v));
     for (bool is_open = sharp_edges != 0u; is_open; is_open = false) {
-        uint edge = uint(findLSB(sharp_edges));
-        vec3 q[4];
-        vec4 n = (edge & 1u) == 0u ? nu : nv;
-        if (is_sharp_border) {
-            Object object = push.frame.v.scene.v.objects.v[patch_places.y];
-            uint coarse_boundary = patch_boundary(push.patches.v[coarse.place].info);
-            [[dont_unroll]] for (uint i = 0u; i < 4u; ++i) {
-                q[i] = to_world(object, control_point_of(push.patches, push.points, coarse.place,
-                                                         along_edge(coarse.edge, i), coarse_boundary));
-            }
-            Parameter along = (coarse.edge & 1u) == 0u ? coarse.u : coarse.v;
-            vec4 slope;
-            cubic_basis(along.t, along.s, n, slope);
-        } else {
-            [[dont_unroll]] for (uint i = 0u; i < 4u; ++i) {
-                q[i] = control_point[along_edge(edge, i)];
-            }
-        }
-        position = curve_position(q, n);
-        // Two of them meet in a corner that is interpolated.
-        uint rest = sharp_edges & (sharp_edges - 1u);
-        if (rest != 0u) {
-            uint other = uint(findLSB(rest));
-            // Corner 0 lies between edges 3 and 0; else the higher edge begins there.
-            uint corner = edge == 0u && other == 3u ? 0u : other;
-            const uint PLACES[4] = uint[4](5u, 6u, 10u, 9u);
-            position = control_point[PLACES[corner]];
-        }
+        result.position = sharp_position(sharp_edges, border, result.nu, result.nv);
     }
-    position = without_sign_of_zero(position);
-    normal = without_sign_of_zero(normal);
-    for (bool is_open = limit != NONE; is_open; is_open = false) {
+    result.position = without_sign_of_zero(result.position);
+    for (bool is_open = result.limit != NONE; is_open; is_open = false) {
         Object object = push.frame.v.scene.v.objects.v[patch_places.y];
-        LimitPoint point = push.frame.v.scene.v.limits.v[limit];
-        position = to_world(object, point.position);
-        normal = normal_to_world(object, point.normal);
+        LimitPoint point = push.frame.v.scene.v.limits.v[result.limit];
+        result.position = to_world(object, point.position);
+        result.normal = normal_to_world(object, point.normal);
     }
-    return Evaluated(position, normal);
+    return result;
 }
 
 // Evaluates with fewer operations, each patch by itself.
 Evaluated evaluate(Parameter u, Parameter v, PatchInfo info)
 {
-    precise vec4 nu;
-    precise vec4 du;
-    precise vec4 nv;
-    precise vec4 dv;
-    basis(u, v, patch_crease(info), patch_sharpness, nu, du, nv, dv);
+    Evaluated result;
+    result.limit = NONE;
+    result.place = own_place();
+    result.decider.place = NONE;
+    result.u = u;
+    result.v = v;
+    basis(u, v, patch_crease(info), patch_sharpness, result.nu, result.du, result.nv, result.dv);
     precise vec3 column[4];
     precise vec3 slope[4];
     for (int i = 0; i < 4; ++i) {
-        column[i] = weigh(control_point[i], control_point[4 + i], control_point[8 + i], control_point[12 + i], nv);
-        slope[i] = weigh(control_point[i], control_point[4 + i], control_point[8 + i], control_point[12 + i], dv);
+        column[i] = weigh(control_point[i], control_point[4 + i], control_point[8 + i], control_point[12 + i], result.nv);
+        slope[i] = weigh(control_point[i], control_point[4 + i], control_point[8 + i], control_point[12 + i], result.dv);
     }
-    precise vec3 position = weigh(column[0], column[1], column[2], column[3], nu) / 36.0;
-    precise vec3 along_u = weigh(column[0], column[1], column[2], column[3], du);
-    precise vec3 along_v = weigh(slope[0], slope[1], slope[2], slope[3], nu);
-    return Evaluated(position, unit_normal(along_u, along_v));
+    precise vec3 position = weigh(column[0], column[1], column[2], column[3], result.nu) / 36.0;
+    result.position = position;
+    result.along_u = weigh(column[0], column[1], column[2], column[3], result.du);
+    result.along_v = weigh(slope[0], slope[1], slope[2], slope[3], result.nu);
+    result.normal = unit_normal(result.along_u, result.along_v);
+    return result;
+}
+
+// Texture coordinates of a patch, or their derivatives times 12.
+vec2 tex_coord(uint place, vec4 nu, vec4 nv, float scale)
+{
+    SceneTables scene = push.frame.v.scene;
+    if (scene.v.patch_tex_coords.v[16u * place] == NONE) {
+        return vec2(0.0);
+    }
+    vec3 p[16];
+    [[dont_unroll]] for (uint i = 0u; i < 16u; ++i) {
+        p[i] = vec3(scene.v.tex_coords.v[scene.v.patch_tex_coords.v[16u * place + i]], 0.0);
+    }
+    precise vec3 result = weigh_patch(p, nu, nv) / scale;
+    return without_sign_of_zero(result).xy;
+}
+
+precise float between_corners(vec4 at, Parameter u, Parameter v)
+{
+    precise float low = u.s * at.x + u.t * at.y;
+    precise float high = u.s * at.w + u.t * at.z;
+    precise float result = v.s * low + v.t * high;
+    return result;
+}
+
+// Where the displacement of a point is looked up, and its level of detail.
+MapPlace map_place(Object object, DisplacementMap map, uint place, Parameter u, Parameter v, vec4 nu, vec4 nv, out float lod)
+{
+    SceneTables scene = push.frame.v.scene;
+    PatchInfo info = push.patches.v[place].info;
+    MapPlace result;
+    result.uv = map.layout_kind == LAYOUT_FACES ? vec2(0.0) : tex_coord(place, nu, nv, 36.0);
+    result.ptex_face = info.ptex_face;
+    ptex_place(info, u, v, result.u, result.v);
+    lod = between_corners(corner_densities(face_lods(scene, object, info.ptex_face), info), u, v);
+    return result;
+}
+
+// Moves a point by its object's displacement map. The direction becomes the normal that it is moved along; returns the normal of
+// the displaced surface.
+vec3 displace(inout Evaluated point)
+{
+    SceneTables scene = push.frame.v.scene;
+    Object object = scene.v.objects.v[patch_places.y];
+    vec3 shading_normal = point.normal;
+    for (bool is_open = object.map != NONE; is_open; is_open = false) {
+        DisplacementMap map = scene.v.maps.v[object.map];
+        float lod;
+        MapPlace own = map_place(object, map, point.place, point.u, point.v, point.nu, point.nv, lod);
+        MapPlace place = own;
+        vec3 direction = point.normal;
+        // Across a crease, and at corners, the direction and the texture coordinates are not this patch's own.
+        bool is_decided = point.limit == NONE && point.decider.place != NONE && point.decider.place != point.place;
+        for (bool is_other = is_decided; is_other; is_other = false) {
+            BorderPoint decider = point.decider;
+            vec3 p[16];
+            border_points(decider, p);
+            vec4 nu;
+            vec4 du;
+            vec4 nv;
+            vec4 dv;
+            PatchInfo info = push.patches.v[decider.place].info;
+            basis(decider.u, decider.v, patch_crease(info), push.patches.v[decider.place].sharpness, nu, du, nv, dv);
+            direction = without_sign_of_zero(unit_normal(weigh_patch(p, du, nv), weigh_patch(p, nu, dv)));
+            place = map_place(object, map, decider.place, decider.u, decider.v, nu, nv, lod);
+        }
+        for (bool is_limit = point.limit != NONE; is_limit; is_limit = false) {
+            LimitSeat seat = scene.v.limit_seats.v[point.limit];
+            direction = normal_to_world(object, scene.v.limits.v[seat.canonical].normal);
+            place.uv = seat.uv;
+        }
+        point.position = displaced(point.position, displacement_vector(object, map, sample_map(map, place, lod), direction));
+        float scale = 12.0 * halvings(patch_depth(push.patches.v[point.place].info));
+        vec2 along_u = vec2(scale, 0.0);
+        vec2 along_v = vec2(0.0, scale);
+        if (map.layout_kind != LAYOUT_FACES) {
+            along_u = tex_coord(point.place, point.du, point.nv, 1.0);
+            along_v = tex_coord(point.place, point.nu, point.dv, 1.0);
+        }
+        vec3 da = displacement_vector(object, map, map_change(map, own, along_u, lod), direction);
+        vec3 db = displacement_vector(object, map, map_change(map, own, along_v, lod), direction);
+        shading_normal = displaced_normal(point.along_u, point.along_v, da, db, point.normal);
+        point.normal = direction;
+    }
+    return shading_normal;
 }
 
 // The point at x of an edge of the patch, or of the piece's part of it.
@@ -252,8 +377,19 @@ void main()
     } else {
         point = evaluate(u, v, info);
     }
+    vec2 st = vec2(0.0);
+    if (TEX_COORDS) {
+        // This patch's own, even where another one decides.
+        vec4 nu;
+        vec4 du;
+        vec4 nv;
+        vec4 dv;
+        basis(u, v, patch_crease(info), patch_sharpness, nu, du, nv, dv);
+        st = tex_coord(own_place(), nu, nv, 36.0);
+    }
+    vec3 shading_normal = DISPLACED ? displace(point) : point.normal;
     // -2 stands for a factor of 1 beside edges with more segments.
     float factor = CUT ? -max(inner_factors.x, inner_factors.y) * float(piece_place.z) : max(max(inner_factors.x, inner_factors.y), 1.0);
-    put_surface_point(point.position, point.normal, vec2(u.t, v.t), info, patch_words.w,
+    put_surface_point(point.position, point.normal, shading_normal, vec2(u.t, v.t), st, info, patch_words.w,
                       patch_transition(info) != 0u ? KIND_TRANSITION : KIND_REGULAR, factor);
 }

@@ -35,6 +35,6 @@ void main()
         return;
     }
     for (uint i = 0; i < 4; ++i) {
-        mark_limit(push.scene, push.scene.v.seams.v[seams].limits[i]);
+        mark_corner(push.scene, push.scene.v.seams.v[seams].limits[i]);
     }
 }

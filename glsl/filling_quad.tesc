@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shared/frame.glsl"
 #include "shared/entry.glsl"
+#include "shared/displacement.glsl"
 
 layout(vertices = 8) out;
 layout(location = 0) in uint list_place[];
@@ -11,6 +12,38 @@ layout(location = 0) out vec3 limit_position[]; // of corners 0 to 3, and the mi
 layout(location = 1) out vec3 limit_normal[];
 layout(location = 2) patch out uvec4 patch_words; // its PatchInfo, and its number
 layout(location = 3) patch out uint fan; // which of the points all triangles of an uneven quad meet at; else NONE
+layout(location = 4) out vec3 shading_normal[]; // of the displaced surface
+layout(location = 5) out vec2 tex_coord[];
+
+// Place of each of the points in the quad.
+const vec2 UVS[8] = vec2[8](vec2(0.0, 0.0), vec2(1.0, 0.0), vec2(1.0, 1.0), vec2(0.0, 1.0), vec2(0.5, 0.0), vec2(1.0, 0.5),
+                            vec2(0.5, 1.0), vec2(0.0, 0.5));
+
+// Moves a limit point as every patch at it does; the normal becomes the direction. Returns the normal of the displaced surface.
+vec3 displace(Object object, uint limit, PatchInfo info, vec2 uv, inout vec3 position, inout vec3 normal)
+{
+    SceneTables scene = push.frame.v.scene;
+    DisplacementMap map = scene.v.maps.v[object.map];
+    LimitSeat seat = scene.v.limit_seats.v[limit];
+    vec3 own_normal = normal;
+    normal = normal_to_world(object, scene.v.limits.v[seat.canonical].normal);
+    MapPlace place;
+    place.uv = seat.uv;
+    place.ptex_face = info.ptex_face;
+    ptex_place(info, Parameter(uv.x, 1.0 - uv.x), Parameter(uv.y, 1.0 - uv.y), place.u, place.v);
+    float lod = density_at(face_lods(scene, object, info.ptex_face), ptex_uv(info, uv));
+    position = displaced(position, displacement_vector(object, map, sample_map(map, place, lod), normal));
+    if (map.layout_kind == LAYOUT_FACES) {
+        // How the tangents run in the Ptex face is not known.
+        return own_normal;
+    }
+    LimitTangents tangents = scene.v.limit_tangents.v[limit];
+    vec3 a = to_world_vector(object, tangents.a);
+    vec3 b = to_world_vector(object, tangents.b);
+    vec3 da = displacement_vector(object, map, map_change(map, place, seat.along_a, lod), normal);
+    vec3 db = displacement_vector(object, map, map_change(map, place, seat.along_b, lod), normal);
+    return displaced_normal(a, b, da, db, own_normal);
+}
 
 void main()
 {
@@ -26,8 +59,21 @@ void main()
     bool is_middle = i >= 4u && (split_edges >> edge & 1u) != 0u;
     uint place = is_middle ? faces.v[face].midpoints[edge] : faces.v[face].limits[edge];
     LimitPoint limit = LimitPoints(push.points).v[place];
-    limit_position[gl_InvocationID] = to_world(object, limit.position);
-    limit_normal[gl_InvocationID] = normal_to_world(object, limit.normal);
+    vec3 position = to_world(object, limit.position);
+    vec3 normal = normal_to_world(object, limit.normal);
+    if (DISPLACED) {
+        shading_normal[gl_InvocationID] = normal;
+        if (object.map != NONE) {
+            vec2 uv = UVS[is_middle ? i : edge];
+            shading_normal[gl_InvocationID] = displace(object, place, faces.v[face].info, uv, position, normal);
+        }
+    }
+    if (TEX_COORDS) {
+        uint own = scene.v.face_tex_coords.v[8u * face + (is_middle ? i : edge)];
+        tex_coord[gl_InvocationID] = own == NONE ? vec2(0.0) : scene.v.tex_coords.v[own];
+    }
+    limit_position[gl_InvocationID] = position;
+    limit_normal[gl_InvocationID] = normal;
     if (i == 0) {
         PatchInfo info = faces.v[face].info;
         bool is_mirrored = (object.flags & OBJECT_MIRRORED) != 0u;

@@ -9,6 +9,8 @@ layout(location = 0) in vec3 limit_position[];
 layout(location = 1) in vec3 limit_normal[];
 layout(location = 2) patch in uvec4 patch_words;
 layout(location = 3) patch in uint fan;
+layout(location = 4) in vec3 shading_normal[];
+layout(location = 5) in vec2 tex_coord[];
 
 // Which limit point lies at column i, row j of the 3 x 3. There is none in the middle: it becomes the fan's point, so that the
 // triangles around it are those of a fan, and two without area.
@@ -20,6 +22,8 @@ void main()
 {
     uvec2 grid = uvec2(round(2.0 * gl_TessCoord.xy));
     uint place = grid == uvec2(1u) ? fan : PLACES[3 * grid.y + grid.x];
-    put_surface_point(limit_position[place], limit_normal[place], UVS[place],
+    vec3 shading = DISPLACED ? shading_normal[place] : limit_normal[place];
+    vec2 st = TEX_COORDS ? tex_coord[place] : vec2(0.0);
+    put_surface_point(limit_position[place], limit_normal[place], shading, UVS[place], st,
                       PatchInfo(patch_words.x, patch_words.y, patch_words.z), patch_words.w, KIND_FILLING, 1.0);
 }

@@ -19,7 +19,7 @@ void main()
     ListItem item = push.scene.v.leaf_items.v[thread];
     uint first_edge = push.scene.v.objects.v[item.object].first_edge;
     for (uint i = 0; i < 4; ++i) {
-        mark_limit(push.scene, push.scene.v.irregular.v[item.place].limits[i]);
+        mark_corner(push.scene, push.scene.v.irregular.v[item.place].limits[i]);
         if ((push.scene.v.irregular.v[item.place].flags >> (FACE_STAR_LIMITS_SHIFT + i) & 1u) != 0u) {
             mark_star(push.scene, push.scene.v.irregular.v[item.place].stars[i]);
         }
@@ -29,7 +29,7 @@ void main()
         }
         uint bit = first_edge + edge;
         if ((push.scene.v.split_edges.v[bit >> 5] >> (bit & 31u) & 1u) != 0u) {
-            mark_limit(push.scene, push.scene.v.irregular.v[item.place].midpoints[i]);
+            mark_corner(push.scene, push.scene.v.irregular.v[item.place].midpoints[i]);
             mark_star(push.scene, push.scene.v.irregular.v[item.place].stars[i]);
             mark_star(push.scene, push.scene.v.irregular.v[item.place].stars[(i + 1u) & 3u]);
         }

@@ -13,6 +13,7 @@ layout(push_constant, scalar) uniform Push {
     LimitWeights weights; // of the position and of two tangents
     Indices in_use; // limit points
     ListHeads head; // their number
+    LimitTangentTable tangents; // where surfaces are displaced
 } push;
 
 void main()
@@ -40,4 +41,7 @@ void main()
     result.position = position;
     result.normal = normal;
     push.limits.v[limit_index] = result;
+    if (DISPLACED) {
+        push.tangents.v[limit_index] = LimitTangents(tangent0, tangent1);
+    }
 }

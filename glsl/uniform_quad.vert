@@ -13,5 +13,5 @@ void main()
     FillingQuads quads = FillingQuads(push.patches);
     LimitPoint limit = LimitPoints(push.points).v[quads.v[quad].corners[corner]];
     vec2 uv = vec2(corner == 1 || corner == 2, corner >= 2);
-    put_surface_point(limit.position, limit.normal, uv, quads.v[quad].info, push.first_patch_id + quad, KIND_FILLING, 1.0);
+    put_surface_point(limit.position, limit.normal, limit.normal, uv, vec2(0.0), quads.v[quad].info, push.first_patch_id + quad, KIND_FILLING, 1.0);
 }

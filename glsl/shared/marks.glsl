@@ -18,6 +18,15 @@ void mark_limit(SceneTables scene, uint limit)
     }
 }
 
+// The limit point at a corner, and the one that says where it is displaced to.
+void mark_corner(SceneTables scene, uint limit)
+{
+    mark_limit(scene, limit);
+    if (DISPLACED && limit != NONE) {
+        mark_limit(scene, scene.v.limit_seats.v[limit].canonical);
+    }
+}
+
 // The points one level down around a vertex.
 void mark_star(SceneTables scene, uint star)
 {

@@ -30,6 +30,7 @@ struct Object {
     uint patch_count;
     uint first_root;      // irregular faces of level 0
     uint root_count;
+    uint map;             // its displacement map; NONE for none
     uint first_edge;      // edge e of the tables is bit first_edge + e of the split edges
 };
 
@@ -171,6 +172,13 @@ struct SceneData {
     Weights density_scales;  // of cage points
     Indices star_first;
     Indices star_marks_of;   // places among the marks of the points around
+    DisplacementMaps maps;
+    Weights texel_counts;    // of slots of meshes: texels of their map along an edge
+    TexCoords tex_coords;
+    Indices patch_tex_coords; // 16 of each patch
+    Indices face_tex_coords;  // 8 of each irregular face: at its limit points
+    LimitSeats limit_seats;
+    LimitTangentTable limit_tangents;
     SlotDensities densities;
     Bits split_edges;
     Bits star_marks;
@@ -202,6 +210,10 @@ uint list_length(ListHeads heads, uint list)
 
 // Whether any object stands elsewhere than its mesh: without it no transform is fetched, or applied.
 layout(constant_id = 4) const bool PLACED = true;
+// Whether any object is displaced.
+layout(constant_id = 6) const bool DISPLACED = false;
+// Whether texture coordinates are asked for.
+layout(constant_id = 7) const bool TEX_COORDS = false;
 
 vec3 to_world(Object object, vec3 p)
 {
@@ -210,6 +222,16 @@ vec3 to_world(Object object, vec3 p)
     }
     // Columns times coordinates, in this order everywhere.
     precise vec3 result = ((object.to_world[0] * p.x + object.to_world[1] * p.y) + object.to_world[2] * p.z) + object.to_world[3];
+    return result;
+}
+
+// A vector between points.
+vec3 to_world_vector(Object object, vec3 a)
+{
+    if (!PLACED) {
+        return a;
+    }
+    precise vec3 result = (object.to_world[0] * a.x + object.to_world[1] * a.y) + object.to_world[2] * a.z;
     return result;
 }
 

@@ -1,5 +1,6 @@
 // What a regular patch takes from other patches so that both have the same bits: limit points at corners, and along halves of
-// a coarser patch's edge that patch's control points.
+// a coarser patch's edge that patch's control points. Where surfaces are displaced, one patch decides for both sides of creases and of
+// seams of texture coordinates.
 #ifndef PLANISH_SEAMS
 #define PLANISH_SEAMS
 #include "control_points.glsl"
@@ -8,9 +9,9 @@
 
 const uint NO_EDGE = 4;
 
-// Where the point (u, v) on an edge lies in the coarser patch along it.
+// Where a point on an edge lies in the patch along it that decides there.
 struct BorderPoint {
-    uint place; // of the coarser patch
+    uint place; // of that patch
     uint edge;
     Parameter u;
     Parameter v;
@@ -19,8 +20,9 @@ struct BorderPoint {
 BorderPoint border_point(uint border, Parameter along)
 {
     BorderPoint result;
-    result.place = border >> 4;
-    result.edge = border >> 2 & 3u;
+    result.place = border >> 5;
+    result.edge = border >> 3 & 3u;
+    uint part = border >> 1 & 3u;
     if ((border & 1u) != 0u) {
         along = Parameter(along.s, along.t);
     }
@@ -29,7 +31,7 @@ BorderPoint border_point(uint border, Parameter along)
     precise float far = 0.5 + 0.5 * along.s;
     precise float beyond = 0.5 + 0.5 * along.t;
     precise float rest = 0.5 * along.s;
-    Parameter whole = (border & 2u) == 0u ? Parameter(near, far) : Parameter(beyond, rest);
+    Parameter whole = part == 0u ? Parameter(near, far) : (part == 1u ? Parameter(beyond, rest) : along);
     Parameter across = result.edge == 1u || result.edge == 2u ? Parameter(1.0, 0.0) : Parameter(0.0, 1.0);
     bool is_along_u = (result.edge & 1u) == 0u;
     result.u = is_along_u ? whole : across;

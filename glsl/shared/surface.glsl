@@ -15,11 +15,13 @@ const uint KIND_CREASE = 3;
 const uint KIND_BOUNDARY = 4;
 
 #if defined(DUMP)
-layout(xfb_buffer = 0, xfb_stride = 40) out;
+layout(xfb_buffer = 0, xfb_stride = 60) out;
 layout(location = 0, xfb_buffer = 0, xfb_offset = 0) out vec3 out_position;
 layout(location = 1, xfb_buffer = 0, xfb_offset = 12) out vec3 out_normal;
 layout(location = 2, xfb_buffer = 0, xfb_offset = 24) out vec2 out_uv;
 layout(location = 3, xfb_buffer = 0, xfb_offset = 32) out uvec2 out_face; // Ptex face; level and kind << 8
+layout(location = 4, xfb_buffer = 0, xfb_offset = 40) out vec2 out_tex_coord;
+layout(location = 5, xfb_buffer = 0, xfb_offset = 48) out vec3 out_shading_normal;
 #else
 layout(location = 0) out vec3 out_normal;
 #if defined(LAYERS)
@@ -45,18 +47,21 @@ uint shown_kind(PatchInfo info, uint kind)
 // it, as every value more that is interpolated costs triangle set-up.
 const float MIRRORED_LENGTH = 1048576.0;
 
-// `patch_id`: the patch's number, with PATCH_MIRRORED.
-void put_surface_point(vec3 position, vec3 normal, vec2 uv, PatchInfo info, uint patch_id, uint kind, float factor)
+// `normal` is the limit surface's, along which it is displaced; `shading_normal` that of the surface drawn. `patch_id`: the patch's
+// number, with PATCH_MIRRORED.
+void put_surface_point(vec3 position, vec3 normal, vec3 shading_normal, vec2 uv, vec2 st, PatchInfo info, uint patch_id, uint kind, float factor)
 {
     bool is_mirrored = (patch_id & PATCH_MIRRORED) != 0u;
     gl_Position = push.view_projection * vec4(position, 1.0);
 #if defined(DUMP)
     out_normal = is_mirrored ? -normal : normal;
+    out_tex_coord = st;
+    out_shading_normal = is_mirrored ? -shading_normal : shading_normal;
     out_position = position;
     out_uv = ptex_uv(info, uv);
     out_face = uvec2(info.ptex_face, patch_level(info) | kind << 8);
 #else
-    out_normal = is_mirrored ? -MIRRORED_LENGTH * normal : normal;
+    out_normal = is_mirrored ? -MIRRORED_LENGTH * shading_normal : shading_normal;
 #if defined(LAYERS)
     out_position = position;
     out_uv = ptex_uv(info, uv);

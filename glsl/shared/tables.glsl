@@ -43,7 +43,7 @@ struct RegularPatch {
 // patches that its edges are halves of edges of; NONE for none.
 struct PatchSeams {
     uint limits[4];
-    uint borders[4]; // bit 0: the edges run against each other, 1: the half, 2-3: the edge, 4-31: the coarser patch
+    uint borders[4]; // bit 0: the edges run against each other, 1-2: which half, or 2 for all, 3-4: the edge, 5-31: the patch
 };
 
 // A child of an irregular face is one itself if this bit is set, else a regular patch.
@@ -75,6 +75,35 @@ struct LimitPoint {
     vec3 normal;
 };
 
+struct LimitTangents {
+    vec3 a;
+    vec3 b;
+};
+
+// What the displacement at a limit point is found by, whoever draws it: all sectors of a vertex have the same.
+struct LimitSeat {
+    uint canonical; // the limit point whose normal is the direction
+    vec2 uv;        // texture coordinates
+    vec2 along_a;   // of the point's own sector: their change along its tangents
+    vec2 along_b;
+};
+
+// How the texels of a displacement map lie.
+const uint LAYOUT_REPEAT = 0; // one tile over texture coordinates that repeats
+const uint LAYOUT_UDIM = 1;   // a tile for each unit square of them
+const uint LAYOUT_FACES = 2;  // a tile for each Ptex face
+
+struct MapLevel {
+    uint first_texel;
+    uint width;
+    uint height;
+};
+
+struct MapTile {
+    uint first_level;
+    uint level_count;
+};
+
 // Slots of the densities at the corners of a Ptex face, from the object's first on. That of corner 2 has this bit in the parts
 // of a face of other than four sides: it is the face's middle, corners 1 and 3 are its next and previous vertex.
 const uint PART_OF_FACE = 0x80000000u;
@@ -90,7 +119,28 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Reg
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SeamTable { PatchSeams v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer IrregularFaces { IrregularFace v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FillingQuads { FillingQuad v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LimitTangentTable { LimitTangents v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer LimitSeats { LimitSeat v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer MapLevels { MapLevel v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer MapTiles { MapTile v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TexCoords { vec2 v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer PtexFaces { uvec4 v[]; };
+
+// A displacement map; texels have one number, along the normal, or three, a vector in the mesh's own space.
+struct DisplacementMap {
+    Weights texels;
+    MapLevels levels;
+    MapTiles tiles;
+    Indices tile_of; // unit square to tile; NONE for none
+    Indices parts;   // one bit a Ptex face: it is a part of a face of other than four sides
+    uint channels;
+    uint layout_kind;
+    uint tile_columns;
+    uint tile_rows;
+    uint level_count;
+    vec2 texel;      // between neighbours of the finest level, in texture coordinates or parameters
+};
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer DisplacementMaps { DisplacementMap v[]; };
 
 uint patch_depth(PatchInfo info) { return bitfieldExtract(info.flags, 0, 5); }
 uint patch_level(PatchInfo info) { return bitfieldExtract(info.flags, 5, 5); }

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
-use planish_render::ObjectDesc;
+use planish_gpu::Device;
+use planish_render::{ObjectDesc, Surface};
 use planish_scene::displacement::DisplacementMap;
 use planish_scene::{Camera, LoadOptions, Scene, load};
 use planish_subdiv::ControlMesh;
@@ -17,7 +18,7 @@ use serde::Serialize;
 use crate::args::{DisplacementArguments, ViewArguments};
 use crate::console::Console;
 use crate::culling::backs_are_hidden;
-use crate::displacement::load_maps;
+use crate::displacement::{load_maps, upload_map};
 
 /// Vertical field of view of a camera given by its eye, in degrees.
 const DEFAULT_FOV: f32 = 45.0;
@@ -61,9 +62,19 @@ impl Cage {
         Ok(())
     }
 
-    /// The displacement map of each mesh, if it has one; empty until they are read.
-    pub fn displacements(&self) -> &[Option<DisplacementMap>] {
-        &self.displacements
+    /// Whether any mesh has a displacement map.
+    pub fn is_displaced(&self) -> bool {
+        self.displacements.iter().any(Option::is_some)
+    }
+
+    /// Gives the maps to a surface of these meshes.
+    pub fn displace_surface(&self, device: &Device, surface: &mut Surface) -> Result<()> {
+        for (mesh, map) in self.displacements.iter().enumerate() {
+            if let Some(map) = map {
+                upload_map(device, surface, mesh, &self.scene.meshes[mesh].control_mesh, map)?;
+            }
+        }
+        Ok(())
     }
 
     /// The file, as it was named.

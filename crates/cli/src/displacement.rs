@@ -4,7 +4,10 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use planish_scene::Scene;
-use planish_scene::displacement::{DisplacementMap, DisplacementRequest, load_displacement};
+use planish_gpu::Device;
+use planish_render::{DisplacementDesc, MapLayout, Surface};
+use planish_scene::displacement::{DisplacementMap, DisplacementRequest, TileLayout, load_displacement};
+use planish_subdiv::ControlMesh;
 
 use crate::args::DisplacementArguments;
 use crate::console::{Console, WrongUsage};
@@ -42,6 +45,34 @@ impl DisplacementArguments {
         ];
         given.into_iter().find(|(is_given, _)| *is_given).map(|(_, flag)| flag)
     }
+}
+
+/// Gives a map to a mesh of a surface.
+pub fn upload_map(
+    device: &Device,
+    surface: &mut Surface,
+    mesh: usize,
+    control_mesh: &ControlMesh,
+    map: &DisplacementMap,
+) -> Result<()> {
+    let levels: Vec<[u32; 3]> = map.levels.iter().map(|level| [level.first_texel, level.width, level.height]).collect();
+    let tiles: Vec<[u32; 2]> = map.tiles.iter().map(|tile| [tile.first_level, tile.level_count]).collect();
+    let desc = DisplacementDesc {
+        channels: map.channels,
+        layout: match map.layout {
+            TileLayout::Repeat => MapLayout::Repeat,
+            TileLayout::Udim => MapLayout::Udim,
+            TileLayout::Faces => MapLayout::Faces,
+        },
+        texels: &map.texels,
+        levels: &levels,
+        tiles: &tiles,
+        tile_of: &map.tile_of,
+        tile_columns: map.tile_columns,
+        parts: &map.parts,
+        bound: map.bound,
+    };
+    Ok(surface.displace(device, mesh, control_mesh, &desc)?)
 }
 
 /// Reads the maps of the meshes of the scene at `path`, one a mesh that has one; tells what is odd in them.

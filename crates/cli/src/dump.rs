@@ -5,7 +5,7 @@ use std::sync::mpsc::sync_channel;
 use std::time::Instant;
 
 use anyhow::{Result, anyhow};
-use planish_film::{DumpVertex, check_dump_output, write_ply_stream};
+use planish_film::{DumpProperties, DumpVertex, check_dump_output, write_ply_stream};
 use planish_render::{CapturedVertex, DumpPasses};
 
 use crate::args::DumpArguments;
@@ -23,9 +23,6 @@ const QUEUED_PARTS: usize = 2;
 pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
     let mut cage = Cage::load(&arguments.scene.path, arguments.scene.repair, console)?;
     cage.displace(&arguments.displacement, console)?;
-    if cage.has_uv() {
-        console.explain(format_args!("the dump has no s and t: face-varying channels are not evaluated yet"));
-    }
     let range = arguments.frames.range();
     check_placeholder(&arguments.output, range)?;
     check_dump_output(&frame_path(&arguments.output, range.frames().next().unwrap_or_default()))?;
@@ -37,7 +34,8 @@ pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
     let start = Instant::now();
     let passes = DumpPasses::new(&device, &plan.desc, &plan.needs)?;
     session.pipelines_ms += milliseconds(start);
-    let mut dump = Dump { passes, session, cages: cage.positions() };
+    let properties = DumpProperties { tex_coords: cage.has_uv(), shading_normals: cage.is_displaced() };
+    let mut dump = Dump { passes, session, cages: cage.positions(), properties };
 
     let mut frames = Vec::new();
     if arguments.frames.repeat.is_some() {
@@ -70,6 +68,7 @@ struct Dump<'a> {
     session: Session,
     cages: Vec<&'a [[f32; 3]]>,
     passes: DumpPasses,
+    properties: DumpProperties,
 }
 
 /// A frame that was captured.
@@ -104,8 +103,10 @@ impl Dump<'_> {
         let drawn = self.session.make_lists(&self.cages)?;
         let vertex_count = 3 * planish_render::listed_triangle_count(&self.session.device, &self.session.surface)?;
         let (sender, receiver) = sync_channel::<Vec<DumpVertex>>(QUEUED_PARTS);
+        let properties = self.properties;
         std::thread::scope(|scope| {
-            let writer = scope.spawn(move || write_ply_stream(path, vertex_count, receiver.into_iter().flatten()));
+            let vertices = receiver.into_iter().flatten();
+            let writer = scope.spawn(move || write_ply_stream(path, vertex_count, properties, vertices));
             let captured = self.capture(drawn, move |vertices| {
                 sender.send(vertices.iter().map(dump_vertex).collect()).map_err(|_| anyhow!("the writer has stopped"))
             });
@@ -122,8 +123,8 @@ impl Dump<'_> {
 
 fn dump_vertex(vertex: &CapturedVertex) -> DumpVertex {
     let [level, kind, ..] = vertex.level_and_kind.to_le_bytes();
-    let &CapturedVertex { position, normal, uv, ptex_face, .. } = vertex;
-    DumpVertex { position, normal, uv, face: ptex_face as i32, level, kind }
+    let &CapturedVertex { position, normal, uv, ptex_face, tex_coord, shading_normal, .. } = vertex;
+    DumpVertex { position, normal, uv, face: ptex_face as i32, level, kind, tex_coord, shading_normal }
 }
 
 #[cfg(test)]
@@ -138,6 +139,8 @@ mod tests {
             uv: [0.25, 0.5],
             ptex_face: 7,
             level_and_kind: 5 | 2 << 8,
+            tex_coord: [0.125, 2.0],
+            shading_normal: [1.0, 0.0, 0.0],
         };
         let vertex = dump_vertex(&captured);
         assert_eq!((vertex.level, vertex.kind, vertex.face, vertex.uv), (5, 2, 7, [0.25, 0.5]));

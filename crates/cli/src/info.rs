@@ -43,7 +43,7 @@ fn surface_desc(arguments: &InfoArguments, cage: &Cage) -> Result<SurfaceDesc> {
         Some(level) if surface.tess.is_none() && surface.edge_pixels.is_none() => {
             surface.check_available()?;
             let crease_patches = surface.crease_patches.into();
-            Ok(SurfaceDesc { method: surface.method()?, level, crease_patches })
+            Ok(SurfaceDesc { method: surface.method()?, level, crease_patches, displaced: false })
         }
         _ => Ok(Plan::unseen(cage, surface, &arguments.view, FrameRange::single(0))?.desc),
     }

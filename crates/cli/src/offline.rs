@@ -99,12 +99,22 @@ impl Plan {
             density = density.max(largest_density(&cage.meshes(), &seen, &frame_camera, &setting.options)?);
         }
         let level = isolation_level(density, setting.max_level);
-        let needs = FrameNeeds { watertight: setting.watertight, ..frame_needs(setting.spacing, density, &objects) };
+        let needs = FrameNeeds {
+            watertight: setting.watertight,
+            displaced: cage.is_displaced(),
+            tex_coords: cage.has_uv(),
+            ..frame_needs(setting.spacing, density, &objects)
+        };
         Ok(Self {
             camera: cameras[0].clone(),
             frame_camera: frame_camera(&cameras[0], setting.size),
             objects,
-            desc: SurfaceDesc { method: setting.method, level, crease_patches: setting.crease_patches },
+            desc: SurfaceDesc {
+                method: setting.method,
+                level,
+                crease_patches: setting.crease_patches,
+                displaced: cage.is_displaced(),
+            },
             needs,
             options: setting.options,
         })
@@ -126,7 +136,7 @@ impl Plan {
 /// What frames of about this density need; nothing is culled, and seams are watertight. Twice as dense a frame, of a cage that moves, has all it needs.
 pub fn frame_needs(spacing: Spacing, density: f32, objects: &[ObjectDesc]) -> FrameNeeds {
     let placed = objects.iter().any(|object| object.to_world != Affine3A::IDENTITY);
-    FrameNeeds { spacing, culls: false, placed, cuts: 2.0 * density > MAX_UNCUT_DENSITY, watertight: true }
+    FrameNeeds { spacing, culls: false, placed, cuts: 2.0 * density > MAX_UNCUT_DENSITY, watertight: true, displaced: false, tex_coords: false }
 }
 
 /// How a method selects; nothing is culled.
@@ -186,12 +196,12 @@ impl Session {
         if plan.desc.method == SurfaceMethod::Uniform && (plan.objects.len() != 1 || plan.needs.placed) {
             bail!("{}: method uniform draws one mesh where it is: expected no instances", named());
         }
-        // Where displacement maps meet the renderer: `cage.displacements()` has one a mesh, ready for upload.
-        if cage.displacements().iter().any(Option::is_some) {
-            bail!("{}: displacement maps are read but not drawn yet", named());
+        if plan.desc.method == SurfaceMethod::Uniform && cage.is_displaced() {
+            bail!("{}: method uniform draws the limit surface: expected no displacement map", named());
         }
         let made = preprocess(&cage.meshes(), &plan.desc).with_context(named)?;
-        let surface = Surface::new(device, &cage.meshes(), &plan.objects, plan.desc, made).with_context(named)?;
+        let mut surface = Surface::new(device, &cage.meshes(), &plan.objects, plan.desc, made).with_context(named)?;
+        cage.displace_surface(device, &mut surface)?;
         let start = Instant::now();
         let stages = FrameStages::new(device, &plan.needs)?;
         let pipelines_ms = milliseconds(start);

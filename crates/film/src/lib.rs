@@ -27,5 +27,5 @@ pub use film::{Film, Layer, Samples};
 pub use metadata::{Matrix, Metadata};
 pub use openexr::write_exr;
 pub use output::{ImageFormat, check_dump_output, check_image_output, check_text_output, write_image, write_text};
-pub use ply::{DumpVertex, write_ply, write_ply_stream};
+pub use ply::{DumpProperties, DumpVertex, write_ply, write_ply_stream};
 pub use png::write_png;

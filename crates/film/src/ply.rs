@@ -23,24 +23,43 @@ pub struct DumpVertex {
     pub level: u8,
     /// 0 regular, 1 transition, 2 patch-filling quad, 3 Gregory quad, 4 Gregory triangle, 5 table.
     pub kind: u8,
+    /// `s t`, texture coordinates.
+    pub tex_coord: [f32; 2],
+    /// `sx sy sz`, the shading normal of a displaced surface.
+    pub shading_normal: [f32; 3],
 }
 
-/// Bytes of a vertex: 8 floats, an int, 2 uchars.
-const VERTEX_BYTES: usize = 8 * 4 + 4 + 2;
+/// What a dump says of each vertex besides what all dumps say.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DumpProperties {
+    /// `s t`.
+    pub tex_coords: bool,
+    /// `sx sy sz`.
+    pub shading_normals: bool,
+}
+
+/// Bytes of a vertex at most: 8 floats, an int, 2 uchars, 5 floats.
+const VERTEX_BYTES: usize = 8 * 4 + 4 + 2 + 5 * 4;
 /// Bytes of a triangle: a uchar and 3 ints.
 const TRIANGLE_BYTES: usize = 1 + 3 * 4;
 
 impl DumpVertex {
-    fn to_bytes(self) -> [u8; VERTEX_BYTES] {
-        let mut bytes = [0; VERTEX_BYTES];
-        let floats = self.position.into_iter().chain(self.normal).chain(self.uv);
-        let words = floats.map(f32::to_le_bytes).chain([self.face.to_le_bytes()]);
-        for (target, word) in bytes.chunks_exact_mut(4).zip(words) {
-            target.copy_from_slice(&word);
+    /// Makes bytes those of the vertex.
+    fn put(self, properties: DumpProperties, bytes: &mut Vec<u8>) {
+        bytes.clear();
+        let mut put = |values: &[f32]| values.iter().for_each(|value| bytes.extend(value.to_le_bytes()));
+        put(&self.position);
+        put(&self.normal);
+        put(&self.uv);
+        bytes.extend(self.face.to_le_bytes());
+        bytes.extend([self.level, self.kind]);
+        let mut put = |values: &[f32]| values.iter().for_each(|value| bytes.extend(value.to_le_bytes()));
+        if properties.tex_coords {
+            put(&self.tex_coord);
         }
-        bytes[VERTEX_BYTES - 2] = self.level;
-        bytes[VERTEX_BYTES - 1] = self.kind;
-        bytes
+        if properties.shading_normals {
+            put(&self.shading_normal);
+        }
     }
 }
 
@@ -49,7 +68,7 @@ impl DumpVertex {
 /// # Errors
 /// As [`write_ply_stream`].
 pub fn write_ply(path: &Path, vertices: &[DumpVertex]) -> Result<()> {
-    write_ply_stream(path, vertices.len() as u64, vertices)
+    write_ply_stream(path, vertices.len() as u64, DumpProperties::default(), vertices)
 }
 
 /// As [`write_ply`], for `vertex_count` vertices that need not lie in memory together.
@@ -58,7 +77,7 @@ pub fn write_ply(path: &Path, vertices: &[DumpVertex]) -> Result<()> {
 /// [`Error::PartialTriangle`] unless `vertex_count` is a multiple of 3; [`Error::TooManyVertices`] beyond the range of
 /// `int`; [`Error::StreamLength`] where `vertices` yields fewer or more; [`Error::Write`], [`Error::NoFolder`],
 /// [`Error::NotAFolder`], [`Error::NotAFile`].
-pub fn write_ply_stream<V>(path: &Path, vertex_count: u64, vertices: V) -> Result<()>
+pub fn write_ply_stream<V>(path: &Path, vertex_count: u64, properties: DumpProperties, vertices: V) -> Result<()>
 where
     V: IntoIterator,
     V::Item: Borrow<DumpVertex>,
@@ -70,14 +89,16 @@ where
     let index_count = i32::try_from(vertex_count).map_err(too_many)?;
     atomic::write(path, |writer| {
         let failed = |source| Error::write(path, source);
-        writer.write_all(header(index_count).as_bytes()).map_err(failed)?;
+        writer.write_all(header(index_count, properties).as_bytes()).map_err(failed)?;
         let mut found = 0;
+        let mut bytes = Vec::with_capacity(VERTEX_BYTES);
         for vertex in vertices {
             found += 1;
             if found > vertex_count {
                 break;
             }
-            writer.write_all(&vertex.borrow().to_bytes()).map_err(failed)?;
+            vertex.borrow().put(properties, &mut bytes);
+            writer.write_all(&bytes).map_err(failed)?;
         }
         if found != vertex_count {
             return Err(Error::StreamLength { path: path.to_owned(), expected: vertex_count, found });
@@ -86,7 +107,13 @@ where
     })
 }
 
-fn header(vertex_count: i32) -> String {
+fn header(vertex_count: i32, properties: DumpProperties) -> String {
+    let tex_coords = if properties.tex_coords { "property float s\nproperty float t\n" } else { "" };
+    let shading = if properties.shading_normals {
+        "property float sx\nproperty float sy\nproperty float sz\n"
+    } else {
+        ""
+    };
     format!(
         "ply\n\
          format binary_little_endian 1.0\n\
@@ -102,6 +129,7 @@ fn header(vertex_count: i32) -> String {
          property int face\n\
          property uchar level\n\
          property uchar kind\n\
+         {tex_coords}{shading}\
          element face {}\n\
          property list uchar int vertex_indices\n\
          end_header\n",

@@ -7,6 +7,7 @@ use planish_subdiv::patch::{FillingQuad, PatchInfo, RegularPatch};
 use planish_subdiv::tables::{Border, IndexLists, IrregularFace, PatchSeams, Tables};
 use planish_subdiv::topology::NONE;
 
+use crate::displacement::{limit_seats, tex_coords};
 use crate::edit_points::targets;
 use crate::error::Error;
 use crate::lists::{Capacities, LIST_COUNT, LIST_PHASES, Phases};
@@ -26,6 +27,9 @@ pub(crate) struct TableBuffers {
     pub limit_weights: Buffer,
     pub patches: Buffer,
     pub seams: Buffer,
+    pub limit_seats: Buffer,
+    /// Texture coordinates, those of patches, and those of irregular faces.
+    pub tex_coords: [Buffer; 3],
     pub irregular: Buffer,
     pub quads: Buffer,
     pub ptex_faces: Buffer,
@@ -49,6 +53,8 @@ impl TableBuffers {
             limit_indices: table(device, "limit indices", &limits.indices)?,
             limit_weights: table(device, "limit weights", &limits.weights)?,
             patches: table(device, "patches", &tables.patches.iter().map(patch).collect::<Vec<_>>())?,
+            limit_seats: table(device, "limit seats", &limit_seats(tables))?,
+            tex_coords: tex_coords(device, tables)?,
             seams: table(device, "seams", &tables.seams.iter().map(seams).collect::<Vec<_>>())?,
             irregular: table(device, "irregular faces", &tables.irregular.iter().map(irregular).collect::<Vec<_>>())?,
             quads: table(device, "filling quads", &tables.filling.iter().map(quad).collect::<Vec<_>>())?,
@@ -72,13 +78,14 @@ impl TableBuffers {
             &self.limit_weights,
             &self.patches,
             &self.seams,
+            &self.limit_seats,
             &self.irregular,
             &self.quads,
             &self.ptex_faces,
             &self.density_scales,
             &self.mark_groups,
         ];
-        all.extend(self.neighbours.iter().chain(&self.rings).chain(&self.stars));
+        all.extend(self.neighbours.iter().chain(&self.rings).chain(&self.stars).chain(&self.tex_coords));
         all
     }
 }
@@ -93,6 +100,7 @@ pub(crate) struct FrameBuffers {
     pub edit_offsets: Buffer,
     pub points: Buffer,
     pub limits: Buffer,
+    pub limit_tangents: Buffer,
     pub densities: Buffer,
     pub split_edges: Buffer,
     pub star_marks: Buffer,
@@ -122,6 +130,7 @@ impl FrameBuffers {
             edit_offsets: mapped::<shaders::Points>(device, "edit offsets", tables.edits.len() as u32)?,
             points: array::<shaders::Points>(device, "points", tables.point_count())?,
             limits: array::<shaders::LimitPoint>(device, "limit points", tables.limit_point_count())?,
+            limit_tangents: array::<shaders::LimitTangents>(device, "limit tangents", tables.limit_seats.len() as u32)?,
             densities: array::<shaders::SlotDensity>(device, "densities", sizes.slots)?,
             split_edges: array::<u32>(device, "split edges", sizes.edges.div_ceil(32))?,
             star_marks: array::<u32>(device, "star marks", tables.stars.count().div_ceil(32))?,
@@ -133,7 +142,7 @@ impl FrameBuffers {
         })
     }
 
-    pub fn all(&self) -> [&Buffer; 15] {
+    pub fn all(&self) -> [&Buffer; 16] {
         [
             &self.scene,
             &self.input,
@@ -143,6 +152,7 @@ impl FrameBuffers {
             &self.edit_offsets,
             &self.points,
             &self.limits,
+            &self.limit_tangents,
             &self.densities,
             &self.split_edges,
             &self.star_marks,
@@ -228,7 +238,7 @@ impl ListBuffers {
 /// Keeps all of a surface's buffers alive as long as a recording.
 pub(crate) fn keep(encoder: &mut Encoder, surface: &crate::surface::Surface) {
     let all = surface.buffers.all().into_iter().chain(surface.frame.all()).chain(surface.lists.all());
-    all.for_each(|buffer| encoder.keep(buffer));
+    all.chain(surface.maps.all()).for_each(|buffer| encoder.keep(buffer));
 }
 
 fn read_back<T>(device: &Device, name: &str, count: usize) -> Result<Buffer, Error> {

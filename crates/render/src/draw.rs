@@ -60,6 +60,8 @@ impl DrawPasses {
             placed: needs.placed,
             cuts: needs.cuts,
             watertight: needs.watertight,
+            displaced: needs.displaced,
+            tex_coords: false,
         };
         let wire = PipelineOptions { wire: true, ..fill };
         Ok(Self {

@@ -30,9 +30,9 @@ const NO_CAMERA: FrameCamera =
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct CapturedVertex {
-    /// Position on the limit surface.
+    /// Position on the limit surface, or on the displaced surface.
     pub position: [f32; 3],
-    /// Unit normal, or 0.
+    /// Unit normal of the limit surface, along which it is displaced; or 0.
     pub normal: [f32; 3],
     /// Parameters in the Ptex face.
     pub uv: [f32; 2],
@@ -40,6 +40,10 @@ pub struct CapturedVertex {
     pub ptex_face: u32,
     /// Level in bits 0-7, kind of patch in bits 8-15.
     pub level_and_kind: u32,
+    /// Texture coordinates, if they were asked for.
+    pub tex_coord: [f32; 2],
+    /// Unit normal of the displaced surface, or 0; of others the normal.
+    pub shading_normal: [f32; 3],
 }
 
 /// The passes that capture a surface.
@@ -68,6 +72,8 @@ impl DumpPasses {
             placed: needs.placed,
             cuts: needs.cuts,
             watertight: needs.watertight,
+            displaced: needs.displaced,
+            tex_coords: needs.tex_coords,
         };
         let buffer = |name, kind, size| Buffer::new(device, &BufferDesc { name, kind, size });
         Ok(Self {

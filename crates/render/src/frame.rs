@@ -29,7 +29,7 @@ impl FrameStages {
         Ok(Self {
             select: Select::new(device, needs)?,
             subdivide: Subdivide::new(device)?,
-            limit: Limit::new(device)?,
+            limit: Limit::new(device, needs)?,
             emit: Emit::new(device, needs)?,
         })
     }

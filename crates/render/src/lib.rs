@@ -8,6 +8,7 @@
 mod buffers;
 pub mod camera;
 pub mod density;
+mod displacement;
 mod draw;
 mod dump;
 pub mod edit_points;
@@ -30,6 +31,7 @@ mod upload;
 pub mod visibility;
 
 pub use camera::FrameCamera;
+pub use displacement::{DisplacementDesc, MapLayout};
 pub use draw::{DrawOptions, DrawPasses};
 pub use dump::{CapturedVertex, DumpPasses, listed_triangle_count};
 pub use error::Error;

@@ -8,7 +8,8 @@ use planish_subdiv::tables::Tables;
 
 use crate::error::Error;
 use crate::lists::LIST_PHASES;
-use crate::program::compute_pipeline;
+use crate::options::FrameNeeds;
+use crate::program::displaced_compute_pipeline as compute_pipeline;
 use crate::select::head_offset;
 use crate::surface::Surface;
 use crate::upload::address;
@@ -17,8 +18,8 @@ use crate::upload::address;
 pub(crate) struct Limit(ComputePipeline);
 
 impl Limit {
-    pub(crate) fn new(device: &Device) -> Result<Self, Error> {
-        compute_pipeline(device, &PROGRAM).map(Self)
+    pub(crate) fn new(device: &Device, needs: &FrameNeeds) -> Result<Self, Error> {
+        compute_pipeline(device, &PROGRAM, needs).map(Self)
     }
 
     /// Records one dispatch over all limit points in use.
@@ -38,6 +39,7 @@ impl Limit {
             weights: address(&tables.limit_weights),
             in_use: address::<planish_shaders::Indices>(&frame.in_use).offset(first_item.into()),
             head: address::<planish_shaders::ListHeads>(heads).offset(list as u64),
+            tangents: address(&frame.limit_tangents),
         };
         encoder.compute_indirect(&self.0, &push, heads, head_offset(list));
     }

@@ -4,6 +4,7 @@ use glam::{Affine3A, Vec3};
 use planish_shaders::Object;
 use planish_subdiv::ControlMesh;
 use planish_subdiv::tables::MeshRanges;
+use planish_subdiv::topology::NONE;
 
 /// [`Object::flags`], as `glsl/shared/scene.glsl` has them.
 const IN_HULL: u32 = 1;
@@ -78,6 +79,13 @@ fn scale_of(object: &Object) -> f32 {
     object.to_world[..3].iter().map(|&axis| Vec3::from(axis).length()).fold(0.0, f32::max)
 }
 
+/// Gives an object a displacement map, by which it is displaced by `bound` at most in its mesh's own units.
+pub(crate) fn displace(object: &mut Object, map: u32, bound: f32) {
+    object.map = map;
+    // What directions and sums of directions round to is far less.
+    object.displacement = bound * scale_of(object) * 1.0001;
+}
+
 /// What an object needs to know of its mesh, besides its place in the tables.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct MeshFacts {
@@ -129,6 +137,7 @@ pub(crate) fn objects(descs: &[ObjectDesc], facts: &[MeshFacts], ranges: &[MeshR
             root_count: range.irregular[0].len() as u32,
             // Edges are numbered through all meshes; each object has its own bits.
             first_edge: sizes.edges.wrapping_sub(range.edges.start),
+            map: NONE,
             ..Object::default()
         };
         facts.cage.set(&mut object);

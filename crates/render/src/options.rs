@@ -86,12 +86,17 @@ pub struct FrameNeeds {
     /// Along every seam positions have the same bits on both sides, and normals where the surface is smooth; else each patch is
     /// evaluated by itself, in fewer operations.
     pub watertight: bool,
+    /// Some objects are displaced.
+    pub displaced: bool,
+    /// Dumps have texture coordinates.
+    pub tex_coords: bool,
 }
 
 impl FrameNeeds {
-    /// All.
+    /// All that limit surfaces may need.
     pub fn all(spacing: Spacing) -> Self {
-        Self { spacing, culls: true, placed: true, cuts: true, watertight: true }
+        let (displaced, tex_coords) = (false, false);
+        Self { spacing, culls: true, placed: true, cuts: true, watertight: true, displaced, tex_coords }
     }
 }
 

@@ -40,6 +40,10 @@ pub(crate) struct PipelineOptions {
     pub cuts: bool,
     /// Seams have the same bits on both sides.
     pub watertight: bool,
+    /// Some objects are displaced.
+    pub displaced: bool,
+    /// Texture coordinates are asked for.
+    pub tex_coords: bool,
 }
 
 /// The pipeline of each kind of patch that the method has.
@@ -65,6 +69,8 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
         SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_CREASE, bits: u32::from(options.creases) },
         SpecConstant { id: shaders::bspline_patch_tesc::SPEC_PLACED, bits: u32::from(options.placed) },
         SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_WATERTIGHT, bits: u32::from(options.watertight) },
+        SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_DISPLACED, bits: u32::from(options.displaced) },
+        SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_TEX_COORDS, bits: u32::from(options.tex_coords) },
         SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_CUT, bits: u32::from(kind == PatchKind::Cut) },
     ];
     let view_constant = [SpecConstant { id: shaders::surface_lean_frag::SPEC_VIEW, bits: options.view.constant() }];

@@ -4,10 +4,21 @@ use planish_gpu::{ComputePipeline, ComputePipelineDesc, Device, SpecConstant, St
 use planish_shaders::{ShaderModule, ShaderStage};
 
 use crate::error::Error;
+use crate::options::FrameNeeds;
 
 /// A compute pipeline without specialization constants.
 pub(crate) fn compute_pipeline(device: &Device, module: &ShaderModule) -> Result<ComputePipeline, Error> {
     specialized_compute_pipeline(device, module, module.local_size.map_or(1, |size| size[0]), &[])
+}
+
+/// A compute pipeline that knows whether objects are displaced.
+pub(crate) fn displaced_compute_pipeline(
+    device: &Device,
+    module: &ShaderModule,
+    needs: &FrameNeeds,
+) -> Result<ComputePipeline, Error> {
+    let displaced = SpecConstant { id: planish_shaders::limit_comp::SPEC_DISPLACED, bits: u32::from(needs.displaced) };
+    specialized_compute_pipeline(device, module, module.local_size.map_or(1, |size| size[0]), &[displaced])
 }
 
 /// A compute pipeline whose groups have this many threads by these specialization constants.

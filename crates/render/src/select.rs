@@ -9,7 +9,7 @@ use planish_shaders as shaders;
 use crate::error::Error;
 use crate::lists::{CHUNK, LIST_ACTIVE, LIST_BASE, LIST_LEAVES, LIST_MIDDLES, LIST_PATCHES, LIST_ROOTS, LIST_VERTICES};
 use crate::options::FrameNeeds;
-use crate::program::compute_pipeline;
+use crate::program::{compute_pipeline, displaced_compute_pipeline};
 use crate::surface::Surface;
 use crate::upload::address;
 
@@ -34,6 +34,7 @@ pub(crate) fn head_offset(list: usize) -> u64 {
 impl Select {
     pub fn new(device: &Device, needs: &FrameNeeds) -> Result<Self, Error> {
         let pipeline = |module| compute_pipeline(device, module);
+        let marking = |module| displaced_compute_pipeline(device, module, needs);
         Ok(Self {
             objects: pipeline(&shaders::objects_comp::PROGRAM)?,
             density: pipeline(&shaders::density_comp::PROGRAM)?,
@@ -41,8 +42,8 @@ impl Select {
             rings: pipeline(&shaders::density_rings_vertices_comp::PROGRAM)?,
             around: pipeline(&shaders::density_rings_around_comp::PROGRAM)?,
             select: pipeline(&shaders::select_comp::PROGRAM)?,
-            leaves: pipeline(&shaders::leaves_comp::PROGRAM)?,
-            corners: needs.watertight.then(|| pipeline(&shaders::corners_comp::PROGRAM)).transpose()?,
+            leaves: marking(&shaders::leaves_comp::PROGRAM)?,
+            corners: needs.watertight.then(|| marking(&shaders::corners_comp::PROGRAM)).transpose()?,
             compact: pipeline(&shaders::compact_comp::PROGRAM)?,
         })
     }

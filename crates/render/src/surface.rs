@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use planish_gpu::Device;
 use planish_shaders as shaders;
-use planish_shaders::{DrawHead, FrameCounts, FrameData, FrameInput, ListHead, Object, SceneData};
+use planish_shaders::{DeviceAddress, DrawHead, FrameCounts, FrameData, FrameInput, ListHead, Object, SceneData};
 use planish_subdiv::ControlMesh;
 use planish_subdiv::mesh::HierarchicalEdit;
 use planish_subdiv::refine::{CreasePatches, RefineOptions, Refinement};
@@ -14,6 +14,7 @@ use planish_subdiv::tables::{MeshRanges, Tables};
 use crate::buffers::{FrameBuffers, ListBuffers, TableBuffers};
 use crate::camera::FrameCamera;
 use crate::density::frame_input;
+use crate::displacement::{DisplacementDesc, Maps};
 use crate::error::Error;
 use crate::lists::{Capacities, Phases, Status};
 use crate::marks::Marks;
@@ -30,6 +31,8 @@ pub struct SurfaceDesc {
     pub level: u32,
     /// Which creases are patches of their own.
     pub crease_patches: CreasePatches,
+    /// Meshes may be displaced ([`Surface::displace`]).
+    pub displaced: bool,
 }
 
 impl SurfaceDesc {
@@ -78,6 +81,7 @@ pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preproc
         max_level: desc.level,
         uniform: desc.method == SurfaceMethod::Uniform,
         crease_patches: desc.crease_patches,
+        displaced: desc.displaced,
     };
     let mut times = PreprocessTimes::default();
     let mut parts = Vec::with_capacity(meshes.len());
@@ -108,6 +112,7 @@ pub struct Surface {
     pub(crate) frame: FrameBuffers,
     pub(crate) lists: ListBuffers,
     capacities: Capacities,
+    pub(crate) maps: Maps,
     marks: Marks,
     density_scales: Vec<f32>,
     sub_pixel_bits: u32,
@@ -160,6 +165,7 @@ impl Surface {
             frame,
             lists,
             capacities,
+            maps: Maps::default(),
             marks,
             density_scales,
             sub_pixel_bits,
@@ -195,6 +201,26 @@ impl Surface {
             facts.set(object);
         }
         Ok(self.frame.objects.write(0, &self.objects)?)
+    }
+
+    /// Gives a mesh, which has this cage, a displacement map. Frames must be recorded anew then.
+    ///
+    /// # Panics
+    /// If the surface was not made to be displaced.
+    pub fn displace(
+        &mut self,
+        device: &Device,
+        mesh: usize,
+        cage: &ControlMesh,
+        map: &DisplacementDesc<'_>,
+    ) -> Result<(), Error> {
+        assert!(self.desc.displaced, "a surface that is made to be displaced");
+        let place = self.maps.add(device, map, cage, &self.tables.slots, &self.meshes[mesh])?;
+        for (object, _) in self.objects.iter_mut().zip(&self.object_meshes).filter(|(_, of)| **of == mesh) {
+            crate::objects::displace(object, place, map.bound);
+        }
+        self.frame.objects.write(0, &self.objects)?;
+        self.write_scene()
     }
 
     /// Sets the values of the hierarchical edits that set or move points, for all frames submitted from now on: only
@@ -251,6 +277,13 @@ impl Surface {
             density_scales: address(&tables.density_scales),
             star_first: address(&tables.stars[0]),
             star_marks_of: address(&tables.stars[1]),
+            maps: self.maps.tables.as_ref().map_or_else(DeviceAddress::null, |[maps, _]| address(maps)),
+            texel_counts: self.maps.tables.as_ref().map_or_else(DeviceAddress::null, |[_, counts]| address(counts)),
+            tex_coords: address(&tables.tex_coords[0]),
+            patch_tex_coords: address(&tables.tex_coords[1]),
+            face_tex_coords: address(&tables.tex_coords[2]),
+            limit_seats: address(&tables.limit_seats),
+            limit_tangents: address(&frame.limit_tangents),
             densities: address(&frame.densities),
             split_edges: address(&frame.split_edges),
             star_marks: address(&frame.star_marks),

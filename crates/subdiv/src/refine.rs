@@ -41,6 +41,9 @@ pub struct RefineOptions {
     pub uniform: bool,
     /// Which creases are not refined.
     pub crease_patches: CreasePatches,
+    /// The surface will be displaced: also where normals or texture coordinates differ on both sides of an edge, one of
+    /// them is known to decide for both.
+    pub displaced: bool,
 }
 
 /// How a level came from the one before: its points in order are the children of `vertices`, `edges` and `faces`.

@@ -46,10 +46,10 @@ pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) ->
     let objects = cage.objects(&camera);
     let mut plan = Plan {
         frame_camera: frame_camera(&camera, arguments.size),
-        needs: FrameNeeds { watertight, ..frame_needs(arguments.spacing.into(), tess_factor, &objects) },
+        needs: FrameNeeds { watertight, displaced: cage.is_displaced(), ..frame_needs(arguments.spacing.into(), tess_factor, &objects) },
         objects,
         camera,
-        desc: SurfaceDesc { method, level, crease_patches },
+        desc: SurfaceDesc { method, level, crease_patches, displaced: cage.is_displaced() },
         options: frame_options(method, Density::Tess(tess_factor), false),
     };
     plan.cull(arguments.no_cull);

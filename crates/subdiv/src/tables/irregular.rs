@@ -4,7 +4,7 @@ use crate::patch::{PatchInfo, RegularPatch, control_points};
 use crate::refine::{CreasePatches, Refinement, child_half_edge};
 use crate::tables::Tables;
 use crate::tables::limits::{LimitPoints, children};
-use crate::tables::seams::{PatchSeams, SharedCorners, borders};
+use crate::tables::seams::{PatchSeams, SharedCorners, border_of_cut, borders, displacing_channel, limit_seats};
 use crate::tables::stars::StarPoints;
 use crate::topology::{Level, Location, NONE};
 
@@ -67,6 +67,7 @@ pub(super) fn add_faces(tables: &mut Tables, refinement: &Refinement) {
         faces.add_patches(tables, refinement, &edges, above, &mut limits);
         faces.add_irregular(tables, refinement, &edges, levels.get(k + 1), &mut limits);
     }
+    tables.limit_seats = limit_seats(refinement, &limits.places);
     tables.limits = table;
 }
 
@@ -156,6 +157,8 @@ impl<'a> LevelFaces<'a> {
     ) {
         let level = self.level;
         let (patches_above, places_above) = above.map(|(above, _)| above.patch_places()).unwrap_or_default();
+        let (_, places) = self.patch_places();
+        let channel = displacing_channel(refinement, self.k);
         let mut shared = SharedCorners::new(refinement, self.k, &self.is_irregular, &patches_above);
         let first_point = tables.levels[self.k as usize].points.start;
         for face in (0..level.drawn_count).filter(|&face| level.is_drawn(face) && !self.is_irregular[face as usize]) {
@@ -181,6 +184,12 @@ impl<'a> LevelFaces<'a> {
                 let corner = corners[face as usize];
                 let own = [0, 3].map(|j| child_half_edge(0, above.level, corner, j));
                 seams.borders = borders(above.level, &places_above, corner, own);
+            }
+            if refinement.options.displaced {
+                for (i, border) in (0..).zip(&mut seams.borders) {
+                    let of_cut = || border_of_cut(level, channel, &places, first + i);
+                    *border = border.or_else(of_cut);
+                }
             }
             seams.limits = four(|i| if shared.is_limit(first + i) { limits.point(self.k, first + i) } else { NONE });
             let place = if seams == PatchSeams::NOTHING { NONE } else { tables.seams.len() as u32 };

@@ -25,6 +25,9 @@ pub(super) struct LimitPoints<'a> {
     cache: SharedLimitWeights,
     /// Rows are on the points of the level that they are asked for.
     is_uniform: bool,
+    /// Of displaced surfaces, for each point: the point of its vertex' first sector; its level and corner there.
+    pub places: Vec<(u32, u32, u32)>,
+    is_displaced: bool,
 }
 
 /// The limit points whose rows are on one level.
@@ -59,12 +62,18 @@ impl<'a> LimitPoints<'a> {
             table,
             cache: SharedLimitWeights::default(),
             is_uniform: refinement.options.uniform,
+            places: Vec::new(),
+            is_displaced: refinement.options.displaced,
         }
     }
 
     /// The limit point at a corner (an outgoing half-edge) of a level.
     pub fn point(&mut self, k: u32, corner: u32) -> u32 {
         let (k, corner) = self.place(k, corner);
+        self.point_at(k, corner)
+    }
+
+    fn point_at(&mut self, k: u32, corner: u32) -> u32 {
         let level = &self.refinement.levels[k as usize];
         let vertex = level.origin(corner);
         let known = &mut self.levels[k as usize];
@@ -80,6 +89,12 @@ impl<'a> LimitPoints<'a> {
             known.of_corner.extend(level.sector(corner).spokes.into_iter().map(|spoke| (spoke, point)));
         }
         self.table.push_corner(level, corner, self.first_points[k as usize], &mut self.cache);
+        if self.is_displaced {
+            self.places.push((point, k, corner));
+            if !is_plain {
+                self.places[point as usize].0 = self.point_at(k, level.starts[vertex as usize]);
+            }
+        }
         point
     }
 

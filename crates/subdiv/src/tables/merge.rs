@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::mesh::MAX_ELEMENTS;
 use crate::patch::{FillingQuad, RegularPatch};
 use crate::stencil::StencilRow;
-use crate::tables::{Border, FaceVaryingTable, IrregularFace, LevelPoints, PatchSeams, Tables};
+use crate::tables::{Border, FaceVaryingTable, IrregularFace, LevelPoints, LimitSeat, PatchSeams, Tables};
 use crate::topology::NONE;
 
 /// Where a mesh lies in tables.
@@ -205,6 +205,9 @@ impl Tables {
         table.rows.extend(part.limits.rows.iter().map(|row| row.moved(first_index, first_weight)));
         table.indices.extend(part.limits.indices.iter().map(|&point| points[point as usize]));
         table.weights.extend(&part.limits.weights);
+        let seats = part.limit_seats.iter();
+        self.limit_seats
+            .extend(seats.map(|seat| LimitSeat { canonical: seat.canonical + mesh.limits.start, ..*seat }));
         mesh.stars = following(self.stars.count(), part.stars.count());
         self.stars.append(&part.stars, |point| points[point as usize]);
         mesh.filling = following(self.filling.len() as u32, part.filling.len() as u32);
@@ -223,13 +226,14 @@ impl Tables {
         let seams = own.iter().filter(|patch| patch.seams != NONE).map(|patch| part.seams[patch.seams as usize]);
         // The patches of a level name their seams in order.
         let mut next_seams = self.seams.len() as u32;
-        // Coarser patches are those of the level before.
+        // Those that decide are of this level, or of the one before.
         let coarse_shift = k.checked_sub(1).map_or(0, patch_shift);
+        let shift = |border: &Border| if border.part == Border::WHOLE { patch_shift(k) } else { coarse_shift };
         self.seams.extend(seams.map(|seams| PatchSeams {
             limits: limits(seams.limits),
             borders:
                 seams.borders.map(|border| {
-                    border.map(|border| Border { patch: border.patch.wrapping_add(coarse_shift), ..border })
+                    border.map(|border| Border { patch: border.patch.wrapping_add(shift(&border)), ..border })
                 }),
         }));
         self.patches.extend(own.iter().map(|patch| RegularPatch {

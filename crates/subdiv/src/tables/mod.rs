@@ -26,7 +26,7 @@ pub use face_varying::{FaceVaryingEvaluator, FaceVaryingPatch, FaceVaryingTable}
 pub use irregular::IrregularFace;
 pub use lists::IndexLists;
 pub use merge::MeshRanges;
-pub use seams::{Border, PatchSeams};
+pub use seams::{Border, LimitSeat, PatchSeams};
 pub use slots::{DensitySlots, NGON, WIDE};
 
 /// The points of one level.
@@ -54,6 +54,8 @@ pub struct Tables {
     pub limits: LimitTable,
     /// Bicubic patches, level by level.
     pub patches: Vec<RegularPatch>,
+    /// Of displaced surfaces, for each limit point what its displacement is found by; else none.
+    pub limit_seats: Vec<LimitSeat>,
     /// What patches take from neighbours of other kinds, for those that do.
     pub seams: Vec<PatchSeams>,
     /// Places in `patches`, by level.

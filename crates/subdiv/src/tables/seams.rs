@@ -4,35 +4,42 @@
 //! patch changes: they agree by themselves. Two things do not:
 //! - a corner where irregular faces, or vertices of coarser faces, lie around: all take its limit point;
 //! - an edge that is half of an edge of a coarser patch: the finer patch evaluates the coarser one there.
+//!
+//! Where the surface is displaced, positions depend on normals and texture coordinates too, and those differ on both sides of
+//! creases and of seams of the channel. There one of the patches decides, the first one, and the others evaluate it; and
+//! corners are limit points, each of which has one direction and one pair of coordinates ([`LimitSeat`]).
 
+use crate::face_varying::ChannelLevel;
 use crate::refine::Refinement;
 use crate::topology::{Level, NONE};
 
-/// The coarser patch that an edge of a patch is half of an edge of.
+/// The patch that decides along an edge of another: a coarser one, half of whose edge it is, or one of the same level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Border {
-    /// The coarser patch, among the patches.
+    /// That patch, among the patches.
     pub patch: u32,
     /// Its edge.
     pub edge: u8,
-    /// Which half of that edge: 0 is the one with the lower u or v.
-    pub half: u8,
+    /// Which part of that edge: 0 is the half with the lower u or v, 1 the other, 2 all of it.
+    pub part: u8,
     /// Whether u or v grows along the edge in one of the patches and falls in the other.
     pub is_reversed: bool,
 }
 
 impl Border {
     /// Patches that a packed border can name.
-    pub const MAX_PATCHES: u64 = 1 << 28;
+    pub const MAX_PATCHES: u64 = 1 << 27;
+    /// [`Self::part`] of an edge of the same level.
+    pub const WHOLE: u8 = 2;
 
-    /// In one word: reversed in bit 0, the half in bit 1, the edge in bits 2-3, the patch in bits 4-31.
+    /// In one word: reversed in bit 0, the part in bits 1-2, the edge in bits 3-4, the patch in bits 5-31.
     pub fn pack(self) -> u32 {
-        u32::from(self.is_reversed) | u32::from(self.half) << 1 | u32::from(self.edge) << 2 | self.patch << 4
+        u32::from(self.is_reversed) | u32::from(self.part) << 1 | u32::from(self.edge) << 3 | self.patch << 5
     }
 
     /// The inverse of [`Self::pack`].
     pub fn unpack(word: u32) -> Self {
-        Self { patch: word >> 4, edge: (word >> 2 & 3) as u8, half: (word >> 1 & 1) as u8, is_reversed: word & 1 != 0 }
+        Self { patch: word >> 5, edge: (word >> 3 & 3) as u8, part: (word >> 1 & 3) as u8, is_reversed: word & 1 != 0 }
     }
 }
 
@@ -41,7 +48,7 @@ impl Border {
 pub struct PatchSeams {
     /// Limit point that each corner is, or [`NONE`] if the patch evaluates it.
     pub limits: [u32; 4],
-    /// The coarser patch along each edge.
+    /// What decides along each edge, if not the patch itself.
     pub borders: [Option<Border>; 4],
 }
 
@@ -59,6 +66,8 @@ pub(super) struct SharedCorners<'a> {
     child_corners: &'a [u32],
     /// Vertices below this are those of the level before.
     vertex_count: u32,
+    /// Where the surface is displaced: its channel of texture coordinates, if there is one.
+    displaced: Option<Option<&'a ChannelLevel>>,
     known: Vec<Option<bool>>,
 }
 
@@ -73,6 +82,7 @@ impl<'a> SharedCorners<'a> {
             above: k.checked_sub(1).map(|above| (&refinement.levels[above as usize], is_patch_above)),
             child_corners: split.map_or(&[], |split| &split.child_corners),
             vertex_count: split.map_or(0, |split| split.vertices.len() as u32),
+            displaced: refinement.options.displaced.then(|| displacing_channel(refinement, k)),
             known: vec![None; level.tags.len()],
         }
     }
@@ -83,9 +93,28 @@ impl<'a> SharedCorners<'a> {
         if let Some(known) = self.known[vertex as usize] {
             return known;
         }
-        let is_limit = self.level.all_spokes(vertex).any(|spoke| self.asks_for_limit(vertex, self.level.face(spoke)));
+        let mut faces = self.level.all_spokes(vertex).map(|spoke| self.level.face(spoke));
+        let is_limit = faces.any(|face| self.asks_for_limit(vertex, face)) || self.is_cut(vertex);
         self.known[vertex as usize] = Some(is_limit);
         is_limit
+    }
+
+    /// Whether a crease or a seam of a displaced surface ends at a vertex, that is not in the middle of the edge of a patch of the
+    /// level before.
+    fn is_cut(&self, vertex: u32) -> bool {
+        let Some(channel) = self.displaced else { return false };
+        let mut edges = self.level.all_spokes(vertex).flat_map(|spoke| [spoke, self.level.previous(spoke)]);
+        edges.any(|edge| is_cut(self.level, channel, edge)) && !self.is_middle_of_patch(vertex)
+    }
+
+    fn is_middle_of_patch(&self, vertex: u32) -> bool {
+        let Some((above, is_patch)) = self.above else { return false };
+        let mut faces = self.level.all_spokes(vertex).map(|spoke| self.level.face(spoke));
+        vertex >= self.vertex_count
+            && faces.any(|face| {
+                let parent = above.face(self.child_corners[face as usize]);
+                face >= self.level.drawn_count && is_patch[parent as usize]
+            })
     }
 
     /// Whether a face at a vertex is drawn otherwise than as a patch of this level, or of the level before with the vertex in
@@ -106,14 +135,7 @@ impl<'a> SharedCorners<'a> {
 pub(super) fn borders(above: &Level, places: &[u32], corner: u32, edges: [u32; 2]) -> [Option<Border>; 4] {
     let mut borders = [None; 4];
     for (half_along, parent_edge, edge) in [(0, corner, edges[0]), (1, above.previous(corner), edges[1])] {
-        let is_patch = |&other: &u32| other != NONE && places[above.face(other) as usize] != NONE;
-        let twin = above.twin(parent_edge);
-        let across = if twin != parent_edge {
-            Some(twin).filter(is_patch)
-        } else {
-            above.sharing(&parent_edge).iter().copied().filter(|&other| other != parent_edge).find(is_patch)
-        };
-        let Some(across) = across else { continue };
+        let Some(across) = first_patch_across(above, places, parent_edge) else { continue };
         let face = above.face(across);
         let coarse_edge = across - above.half_edges(face).start;
         // Edges 2 and 3 of a face run against its u and v.
@@ -122,11 +144,76 @@ pub(super) fn borders(above: &Level, places: &[u32], corner: u32, edges: [u32; 2
         borders[edge as usize] = Some(Border {
             patch: places[face as usize],
             edge: coarse_edge as u8,
-            half: half_along ^ u8::from(is_opposite) ^ u8::from(is_coarse_against),
+            part: half_along ^ u8::from(is_opposite) ^ u8::from(is_coarse_against),
             is_reversed: is_against ^ is_opposite ^ is_coarse_against,
         });
     }
     borders
+}
+
+/// The half-edge across an edge whose patch comes first; `places` as of [`borders`].
+fn first_patch_across(level: &Level, places: &[u32], edge: u32) -> Option<u32> {
+    let twin = level.twin(edge);
+    let across = if twin == edge { level.sharing(&edge) } else { std::slice::from_ref(&twin) };
+    let place = |&other: &u32| if other == NONE || other == edge { NONE } else { places[level.face(other) as usize] };
+    across.iter().copied().filter(|other| place(other) != NONE).min_by_key(|other| place(other))
+}
+
+/// The patch of the same level that decides along an edge of a patch of a displaced surface, if it is another one: the first
+/// of those at a crease or a seam.
+pub(super) fn border_of_cut(level: &Level, channel: Option<&ChannelLevel>, places: &[u32], edge: u32) -> Option<Border> {
+    if !is_cut(level, channel, edge) {
+        return None;
+    }
+    let across = first_patch_across(level, places, edge)?;
+    let (own_face, face) = (level.face(edge), level.face(across));
+    if places[face as usize] > places[own_face as usize] {
+        return None;
+    }
+    let own_edge = edge - level.half_edges(own_face).start;
+    let other_edge = across - level.half_edges(face).start;
+    let is_opposite = level.origin(across) != level.origin(edge);
+    Some(Border {
+        patch: places[face as usize],
+        edge: other_edge as u8,
+        part: Border::WHOLE,
+        is_reversed: (own_edge >= 2) ^ is_opposite ^ (other_edge >= 2),
+    })
+}
+
+/// Whether normals or texture coordinates differ on both sides of an edge.
+fn is_cut(level: &Level, channel: Option<&ChannelLevel>, edge: u32) -> bool {
+    level.is_infinite(edge) || channel.is_some_and(|channel| channel.is_seam(edge))
+}
+
+/// The channel whose coordinates displacement maps are looked up by: the first.
+pub(super) fn displacing_channel(refinement: &Refinement, k: u32) -> Option<&ChannelLevel> {
+    refinement.face_varying.first().map(|channel| &channel.levels[k as usize])
+}
+
+/// What the displacement at a limit point is found by, whichever patch or face draws it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LimitSeat {
+    /// The limit point whose normal is the direction: one for all sectors of a vertex.
+    pub canonical: u32,
+    /// Texture coordinates: one pair for all sectors.
+    pub uv: [f32; 2],
+    /// The change of the texture coordinates of the point's own sector along the two tangents of its limit row.
+    pub tangents: [[f32; 2]; 2],
+}
+
+/// The seats of limit points, whose canonical points, levels and corners there are given.
+pub(super) fn limit_seats(refinement: &Refinement, places: &[(u32, u32, u32)]) -> Vec<LimitSeat> {
+    let limit = |(_, k, corner): (u32, u32, u32)| {
+        displacing_channel(refinement, k).map(|channel| channel.limit(&refinement.levels[k as usize], corner))
+    };
+    let rounded = |value: [f64; 2]| value.map(|c| c as f32);
+    let seat = |&place: &(u32, u32, u32)| LimitSeat {
+        canonical: place.0,
+        uv: limit(places[place.0 as usize]).map_or([0.0; 2], |limit| rounded(limit.value)),
+        tangents: limit(place).map_or([[0.0; 2]; 2], |limit| limit.tangents.map(rounded)),
+    };
+    places.iter().map(seat).collect()
 }
 
 #[cfg(test)]
@@ -135,8 +222,8 @@ mod tests {
 
     #[test]
     fn borders_survive_packing() {
-        for (half, is_reversed) in [(0, false), (0, true), (1, false), (1, true)] {
-            let border = Border { patch: (1 << 28) - 1, edge: 2, half, is_reversed };
+        for (part, is_reversed) in [(0, false), (0, true), (1, false), (2, true)] {
+            let border = Border { patch: (1 << 27) - 1, edge: 2, part, is_reversed };
             assert_eq!(Border::unpack(border.pack()), border);
         }
     }
