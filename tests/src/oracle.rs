@@ -11,6 +11,8 @@ use crate::repository::tool;
 pub const POSITION_TOLERANCE: f64 = 2e-6;
 /// The same at corners for which OpenSubdiv's own limit masks are no better (`tools/README.md`, "odd").
 const ODD_CORNER_TOLERANCE: f64 = 1e-3;
+/// Largest error of a face-varying value, over the largest magnitude of one.
+pub const VALUE_TOLERANCE: f64 = 2e-6;
 /// How many times the tolerance a normal may be off where tangents are nearly parallel.
 const SLIVER_NORMAL_RATIO: f64 = 10.0;
 /// How far the covered parameter area of a face may be from 1.
@@ -32,8 +34,17 @@ pub struct Report(Value);
 impl Report {
     /// Compares a dump with the mesh that it was made of.
     pub fn of(mesh: &Path, dump: &Path) -> Result<Self, String> {
+        Self::with(mesh, dump, &[])
+    }
+
+    /// Compares the face-varying values of a dump alone.
+    pub fn of_values(mesh: &Path, dump: &Path) -> Result<Self, String> {
+        Self::with(mesh, dump, &["--st"])
+    }
+
+    fn with(mesh: &Path, dump: &Path, flags: &[&str]) -> Result<Self, String> {
         let mut command = Command::new(tool("osd_oracle"));
-        command.args([mesh, dump]).args(["-j", "1"]);
+        command.args([mesh, dump]).args(["-j", "1"]).args(flags);
         let output = command.output().map_err(|error| format!("osd_oracle: {error}"))?;
         let json = serde_json::from_slice(&output.stdout).ok().filter(|_| output.status.success());
         json.map(Self).ok_or_else(|| {
@@ -46,6 +57,25 @@ impl Report {
     pub fn number(&self, field: &str) -> f64 {
         let value = field.split('.').fold(&self.0, |value, name| &value[name]);
         value.as_f64().unwrap_or_else(|| panic!("osd_oracle reports no number {field}"))
+    }
+
+    /// What is wrong with face-varying values. Those of faces that cannot be judged may be as many as these.
+    pub fn value_faults(&self, unjudged: usize) -> Vec<String> {
+        let mut faults = Vec::new();
+        for (field, most) in
+            [("max_st_err", VALUE_TOLERANCE), ("nonfinite_st", 0.0), ("pathological_st", unjudged as f64)]
+        {
+            if self.number(field) > most {
+                faults.push(format!("{field} is {}, expected at most {most}", self.number(field)));
+            }
+        }
+        if self.number("st_compared") + self.number("pathological_st") != self.number("vertices") {
+            faults.push(format!("{} of {} are compared", self.number("st_compared"), self.number("vertices")));
+        }
+        if !faults.is_empty() {
+            faults.push(format!("the worst is {}", self.0["worst_st"]));
+        }
+        faults
     }
 
     /// All that is wrong. The dump may leave out `absent_faces` Ptex faces.

@@ -39,7 +39,7 @@ pub fn model(name: &str) -> Option<PathBuf> {
 
 /// Beginnings of the names of scenes that are about rules. Rules do not change how patches are tessellated: where that is
 /// what is tested, one factor is enough for them.
-const RULES: [&str; 11] = [
+const RULES: [&str; 12] = [
     "boundary_",
     "chaikin_",
     "corner_",
@@ -51,6 +51,7 @@ const RULES: [&str; 11] = [
     "nonmanifold_",
     "smooth_triangles",
     "triangles_",
+    "uv_",
 ];
 
 /// Whether a scene is about rules and not about shapes.

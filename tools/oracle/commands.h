@@ -8,6 +8,8 @@
 
 // How far is every vertex of a dump from the limit surface, and does the dump cover the parameter domain once?
 void compare(const LimitOracle& oracle, const std::string& dump_path);
+// How far are the s and t of every vertex of a dump from the limit of the cage's face-varying values?
+void compare_st_alone(const LimitOracle& oracle, const std::string& dump_path);
 
 // The oracle against limit masks after `depth` uniform subdivisions. Vertices that are still semi-sharp are skipped.
 void selftest(const LimitOracle& oracle, int depth);

@@ -1,6 +1,7 @@
 #include "commands.h"
 #include "coverage.h"
 #include "dump.h"
+#include "st_errors.h"
 #include "vertex_errors.h"
 
 #include "../shared/json.h"
@@ -119,6 +120,21 @@ void add_errors(JsonObject& json, const VertexErrors& errors, const CageExtent& 
     json.json("special_corners", special.str());
 }
 
+// Where the dump has s and t and the cage has values.
+void add_st_errors(JsonObject& json, const LimitOracle& oracle, const Dump& dump, const VertexOrder& order) {
+    if (dump.s.empty() || oracle.cage().face_values.empty())
+        return;
+    const StErrors errors = compare_st(oracle, dump, order.vertices);
+    json.count("st_compared", errors.count);
+    json.number("max_st_err", std::max(0.0, errors.worst.error));
+    json.number("mean_st_err", errors.mean());
+    json.count("nonfinite_st", errors.nonfinite_count);
+    json.count("pathological_st", errors.pathological_count);
+    const size_t i = errors.worst.vertex;
+    const Vec3 got = errors.count ? Vec3{dump.s[i], dump.t[i], 0} : Vec3();
+    json.json("worst_st", json_of(errors.worst, dump, got));
+}
+
 void add_coverage(JsonObject& json, const Coverage& coverage) {
     json.count("ptex_faces_without_limit", coverage.faces_without_limit);
     json.count("ptex_faces_uncovered", coverage.uncovered_count);
@@ -137,7 +153,8 @@ void add_coverage(JsonObject& json, const Coverage& coverage) {
 void compare(const LimitOracle& oracle, const std::string& dump_path) {
     const Stopwatch stopwatch;
     const Dump dump = read_dump(dump_path);
-    const VertexErrors errors = compare_vertices(oracle, dump, order_by_base_face(oracle, dump));
+    const VertexOrder order = order_by_base_face(oracle, dump);
+    const VertexErrors errors = compare_vertices(oracle, dump, order);
     const Coverage coverage = coverage_of(oracle, dump);
 
     JsonObject json;
@@ -152,6 +169,17 @@ void compare(const LimitOracle& oracle, const std::string& dump_path) {
     const Vec3 got_normal = has_vertices ? dump.normal(errors.normal.vertex) : Vec3();
     json.json("worst_pos", json_of(errors.position, dump, got_position));
     json.json("worst_normal", json_of(errors.normal, dump, got_normal));
+    add_st_errors(json, oracle, dump, order);
+    json.number("seconds", stopwatch.seconds(), "%.2f");
+    printf("%s\n", json.str().c_str());
+}
+
+void compare_st_alone(const LimitOracle& oracle, const std::string& dump_path) {
+    const Stopwatch stopwatch;
+    const Dump dump = read_dump(dump_path);
+    JsonObject json;
+    json.count("vertices", dump.vertex_count());
+    add_st_errors(json, oracle, dump, order_by_base_face(oracle, dump));
     json.number("seconds", stopwatch.seconds(), "%.2f");
     printf("%s\n", json.str().c_str());
 }

@@ -24,15 +24,17 @@ uint32_t Dump::add(Vec3 position, Vec3 normal, double at_u, double at_v, int pte
 }
 
 Dump read_dump(const std::string& path) {
-    PlyFile file = read_ply(path, {"x", "y", "z", "nx", "ny", "nz", "u", "v"}, {"face", "level"});
-    for (const PlyColumn<float>& column : file.floats)
-        if (!column.present)
-            fail("PLY: vertex property `" + column.name + "' is missing");
+    PlyFile file = read_ply(path, {"x", "y", "z", "nx", "ny", "nz", "u", "v", "s", "t"}, {"face", "level"});
+    for (size_t k = 0; k < 8; ++k)
+        if (!file.floats[k].present)
+            fail("PLY: vertex property `" + file.floats[k].name + "' is missing");
+    if (file.floats[8].present != file.floats[9].present)
+        fail("PLY: only one of the vertex properties `s' and `t' is there");
     if (!file.integers[0].present)
         fail("PLY: vertex property `face' is missing");
 
     Dump dump;
-    std::vector<float>* columns[] = {&dump.x, &dump.y, &dump.z, &dump.nx, &dump.ny, &dump.nz, &dump.u, &dump.v};
+    std::vector<float>* columns[] = {&dump.x, &dump.y, &dump.z, &dump.nx, &dump.ny, &dump.nz, &dump.u, &dump.v, &dump.s, &dump.t};
     for (size_t k = 0; k < file.floats.size(); ++k)
         columns[k]->swap(file.floats[k].values);
     dump.face.swap(file.integers[0].values);

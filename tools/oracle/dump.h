@@ -10,6 +10,8 @@
 struct Dump {
     // A column for each vertex property.
     std::vector<float> x, y, z, nx, ny, nz, u, v;
+    // Face-varying values; empty where the file has none.
+    std::vector<float> s, t;
     // Ptex face, and the subdivision level of the patch (0 where the file does not say).
     std::vector<int64_t> face, level;
     std::vector<uint32_t> triangles;
@@ -23,7 +25,7 @@ struct Dump {
     void add_triangle(uint32_t a, uint32_t b, uint32_t c) { triangles.insert(triangles.end(), {a, b, c}); }
 };
 
-// Fails where a vertex property other than `level` is missing.
+// Fails where a vertex property other than `level`, `s` and `t` is missing.
 Dump read_dump(const std::string& path);
-// Without `level`.
+// Without `level`, `s` and `t`.
 void write_dump(const std::string& path, const Dump& dump, bool ascii);

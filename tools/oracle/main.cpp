@@ -17,6 +17,7 @@ static const char* const manual =
     "\n"
     "Compares every vertex of a dump with OpenSubdiv's limit surface in double, at the vertex's face, u and v, and\n"
     "checks that the triangles of every face cover its parameter domain once. One line of JSON; see README.md.\n"
+    "  --st        compares the face-varying s and t of the dump alone\n"
     "  --selftest  the oracle against limit masks after K uniform subdivisions\n"
     "  --corners   values at exact corners against points 2^-50 away\n"
     "  --probe     prints position and normal on the way to a corner\n"
@@ -36,7 +37,7 @@ struct CommandLine {
     OracleOptions oracle;
     GenerateOptions generate;
     std::string generator;
-    bool selftest = false, corners = false;
+    bool selftest = false, corners = false, st_alone = false;
     int probe_ptex = -1, probe_corner = 0;
     std::vector<std::string> files;
 
@@ -48,6 +49,8 @@ bool take_command(Arguments& arguments, CommandLine& line) {
         line.selftest = true;
     else if (arguments.is("--corners"))
         line.corners = true;
+    else if (arguments.is("--st"))
+        line.st_alone = true;
     else if (arguments.is("--probe"))
         arguments.integer_pair(line.probe_ptex, line.probe_corner);
     else if (arguments.is("--generate"))
@@ -118,6 +121,8 @@ int main(int argc, char** argv) {
         generate_patch(oracle, line.generate, line.files[1]);
     else if (!line.generator.empty())
         fail("--generate limit|patch");
+    else if (line.st_alone)
+        compare_st_alone(oracle, line.files[1]);
     else
         compare(oracle, line.files[1]);
     return 0;

@@ -24,6 +24,13 @@ std::unique_ptr<Far::TopologyRefiner> make_refiner(const Cage& cage) {
     descriptor.cornerWeights = cage.corner_sharpness.data();
     descriptor.numHoles = (int)cage.hole_faces.size();
     descriptor.holeIndices = cage.hole_faces.data();
+    Far::TopologyDescriptor::FVarChannel channel;
+    if (!cage.face_values.empty()) {
+        channel.numValues = (int)cage.values.size();
+        channel.valueIndices = cage.face_values.data();
+        descriptor.numFVarChannels = 1;
+        descriptor.fvarChannels = &channel;
+    }
     using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
     return std::unique_ptr<Far::TopologyRefiner>(
         Factory::Create(descriptor, Factory::Options(cage.scheme, cage.options)));

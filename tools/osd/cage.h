@@ -24,6 +24,9 @@ struct Cage {
     std::vector<Index> corner_points;
     std::vector<float> corner_sharpness;
     std::vector<Index> hole_faces;
+    // Face-varying values, s and t in x and y, and those of the corners of all faces, as `face_points`; or none.
+    std::vector<Vec3> values;
+    std::vector<Index> face_values;
     OpenSubdiv::Sdc::SchemeType scheme = OpenSubdiv::Sdc::SCHEME_CATMARK;
     OpenSubdiv::Sdc::Options options;
 
@@ -53,8 +56,9 @@ struct CageOptions {
 extern const char* const cage_options_manual;
 
 // Reads an OBJ file with OpenSubdiv's `t` tags. The scheme is Catmull-Clark, unless the file's name begins with loop_
-// or bilinear_ or the options say so; without a tag or option, boundary edges are interpolated and corners are not.
-// Fails where a face names a vertex that is not there.
+// or bilinear_ or the options say so; without a tag or option, boundary edges are interpolated and corners are not, and
+// face-varying values are linear at `corners plus 1`. Fails where a face names a vertex or a value that is not there, or
+// where only some corners have a value.
 Cage read_cage(const std::string& path, const CageOptions& options);
 
 // Null where OpenSubdiv rejects the cage.

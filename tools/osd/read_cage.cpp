@@ -103,6 +103,10 @@ void apply_tag(Cage& cage, const Tag& tag, bool crease_pairs) {
         cage.options.SetVtxBoundaryInterpolation(tag.ints[0] == 0   ? Options::VTX_BOUNDARY_NONE
                                                  : tag.ints[0] == 1 ? Options::VTX_BOUNDARY_EDGE_AND_CORNER
                                                                     : Options::VTX_BOUNDARY_EDGE_ONLY);
+    } else if (tag.name == "facevaryinginterpolateboundary" && !tag.ints.empty()) {
+        if (tag.ints[0] < Options::FVAR_LINEAR_NONE || tag.ints[0] > Options::FVAR_LINEAR_ALL)
+            fail("face-varying interpolation is 0 to 5");
+        cage.options.SetFVarLinearInterpolation((Options::FVarLinearInterpolation)tag.ints[0]);
     } else if (tag.name == "creasemethod" && !tag.strings.empty()) {
         bool chaikin = tag.strings[0] == "chaikin";
         cage.options.SetCreasingMethod(chaikin ? Options::CREASE_CHAIKIN : Options::CREASE_UNIFORM);
@@ -120,12 +124,22 @@ void read_point(Cage& cage, std::istream& words, bool keep_doubles) {
     cage.points.push_back(point);
 }
 
+void read_value(Cage& cage, std::istream& words) {
+    Vec3 value;
+    words >> value.x >> value.y;
+    cage.values.push_back({(float)value.x, (float)value.y, 0});
+}
+
 void read_face(Cage& cage, std::istream& words) {
     std::string corner;
     int size = 0;
     for (; words >> corner; ++size) {
         int index = atoi(corner.c_str());
         cage.face_points.push_back(index < 0 ? (int)cage.points.size() + index : index - 1);
+        const size_t slash = corner.find('/');
+        const int value = slash == std::string::npos ? 0 : atoi(corner.c_str() + slash + 1);
+        if (value != 0)
+            cage.face_values.push_back(value < 0 ? (int)cage.values.size() + value : value - 1);
     }
     cage.face_sizes.push_back(size);
 }
@@ -174,6 +188,7 @@ Cage read_cage(const std::string& path, const CageOptions& options) {
         fail("cannot read " + path);
     Cage cage;
     cage.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+    cage.options.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1);
     choose_scheme(cage, path, options.scheme);
 
     std::string line, key;
@@ -184,6 +199,8 @@ Cage read_cage(const std::string& path, const CageOptions& options) {
             continue;
         if (key == "v")
             read_point(cage, words, options.keep_doubles);
+        else if (key == "vt")
+            read_value(cage, words);
         else if (key == "f")
             read_face(cage, words);
         else if (key == "t" && read_tag(words, tag))
@@ -193,5 +210,12 @@ Cage read_cage(const std::string& path, const CageOptions& options) {
     for (int index : cage.face_points)
         if (index < 0 || index >= (int)cage.points.size())
             fail("a face refers to a vertex that is not there");
+    if (cage.values.empty())
+        cage.face_values.clear();
+    if (!cage.face_values.empty() && cage.face_values.size() != cage.face_points.size())
+        fail("some corners of faces have a vt, others have none");
+    for (int index : cage.face_values)
+        if (index < 0 || index >= (int)cage.values.size())
+            fail("a face refers to a vt that is not there");
     return cage;
 }

@@ -2,7 +2,7 @@
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// Decimals of the coordinates in a file: finer than a hundred-thousandth of a unit is nothing to see.
 const DECIMALS: usize = 5;
@@ -14,6 +14,10 @@ pub struct Cage {
     pub positions: Vec<DVec3>,
     /// Vertex indices from 0 of each face, counter-clockwise seen from outside.
     pub faces: Vec<Vec<u32>>,
+    /// Texture coordinates; none if no corner has one.
+    pub uvs: Vec<DVec2>,
+    /// Texture coordinates' indices from 0, as `faces`; empty if no corner has one.
+    pub face_uvs: Vec<Vec<u32>>,
     /// Subdivision tags, each a line of an OBJ file.
     pub tags: Vec<String>,
 }
@@ -22,7 +26,7 @@ impl Cage {
     /// A mesh of the given vertices and faces.
     pub fn new<const N: usize>(positions: &[[f64; 3]], faces: &[[u32; N]]) -> Self {
         let positions = positions.iter().copied().map(DVec3::from).collect();
-        Self { positions, faces: faces.iter().map(|face| face.to_vec()).collect(), tags: Vec::new() }
+        Self { positions, faces: faces.iter().map(|face| face.to_vec()).collect(), ..Self::default() }
     }
 
     /// Adds a vertex and returns its index.
@@ -83,10 +87,17 @@ impl Cage {
             let [x, y, z] = position.to_array().map(decimal);
             writeln!(text, "v {x} {y} {z}").expect("writing to a string cannot fail");
         }
-        for face in &self.faces {
+        for uv in &self.uvs {
+            let [u, v] = uv.to_array().map(decimal);
+            writeln!(text, "vt {u} {v}").expect("writing to a string cannot fail");
+        }
+        for (index, face) in self.faces.iter().enumerate() {
             text.push('f');
-            for vertex in face {
+            for (corner, vertex) in face.iter().enumerate() {
                 write!(text, " {}", vertex + 1).expect("writing to a string cannot fail");
+                if let Some(uvs) = self.face_uvs.get(index) {
+                    write!(text, "/{}", uvs[corner] + 1).expect("writing to a string cannot fail");
+                }
             }
             text.push('\n');
         }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `cage` | a mesh under construction, and its OBJ text |
 //! | `tags` | creases, sharp vertices, holes and options |
+//! | `seams` | texture coordinates with seams |
 //! | `edits` | hierarchical edits |
 //! | `random` | a small random number generator and smooth noise |
 //! | `sheets` | grids, strips and other open sheets |
@@ -36,6 +37,7 @@ pub mod random_cage;
 pub mod rotate;
 pub mod scene_text;
 pub mod scenes;
+pub mod seams;
 pub mod sectors;
 pub mod sheets;
 pub mod solids;

@@ -13,6 +13,7 @@ mod parts;
 mod several;
 mod shapes;
 mod triangles;
+mod uvs;
 
 use crate::cage::Cage;
 use crate::scene_text::SceneText;
@@ -57,6 +58,7 @@ pub fn all() -> Vec<SceneFile> {
         nonmanifold::files(),
         degenerate::files(),
         edits::files(),
+        uvs::files(),
     ];
     features.into_iter().flatten().collect()
 }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::FaceVaryingTable;
 use crate::patch::{SurfacePoint, evaluate, evaluate_crease};
 use crate::tables::Tables;
-use crate::topology::{Location, NONE};
+use crate::topology::NONE;
 
 /// Evaluates one channel of one mesh's tables in f64: exactly in patches, at the corners of irregular faces at the end of
 /// refinement and in those middles of their edges that are there; between these bilinearly, as the face is drawn.
@@ -32,7 +32,6 @@ impl<'a> FaceVaryingEvaluator<'a> {
     pub fn new(tables: &'a Tables, channel: usize) -> Option<Self> {
         let table = tables.face_varying.get(channel)?;
         let mut evaluator = Self { tables, table, cells: HashMap::new(), depth: 0 };
-        // Finer levels lie later and are looked for first.
         let faces = (0..).zip(&tables.irregular).filter(|(_, face)| face.limits != [NONE; 4]);
         let patches = (0..).zip(&tables.patches).map(|(i, patch)| (patch.info.location, Cell::Patch(i)));
         let faces = faces.map(|(i, face)| (face.info.location, Cell::Face(i)));
@@ -44,13 +43,22 @@ impl<'a> FaceVaryingEvaluator<'a> {
         Some(evaluator)
     }
 
-    /// The value at (u, v) of a Ptex face, both 0 to 1; `None` where the face has no surface.
+    /// The value at (u, v) of a Ptex face, both 0 to 1; `None` where the face has no surface. Where a point lies on the
+    /// border of a patch and of an irregular face, the patch answers.
     pub fn evaluate(&self, ptex_face: u32, u: f64, v: f64) -> Option<[f64; 2]> {
-        let finest_first = (0..=self.depth).rev();
-        let found = finest_first.map(|depth| Self::square(ptex_face, depth, u, v)).find_map(|(location, u, v)| {
-            let key = (location.ptex_face, location.depth, location.u, location.v);
-            self.cells.get(&key).map(|&cell| (cell, u, v))
-        });
+        let mut found = None;
+        for depth in (0..=self.depth).rev() {
+            for (i, local_u) in squares(u, depth) {
+                for (j, local_v) in squares(v, depth) {
+                    match self.cells.get(&(ptex_face, depth, i, j)) {
+                        Some(&Cell::Patch(patch)) => return Some(self.in_patch(patch, local_u, local_v)),
+                        // A coarser square may be that of the face's parent.
+                        Some(&cell) if found.is_none() => found = Some((cell, local_u, local_v)),
+                        _ => {}
+                    }
+                }
+            }
+        }
         let (cell, u, v) = found?;
         Some(match cell {
             Cell::Patch(patch) => self.in_patch(patch, u, v),
@@ -60,14 +68,6 @@ impl<'a> FaceVaryingEvaluator<'a> {
                 self.in_face(&[a, b, c, d, NONE, NONE, NONE, NONE], u, v)
             }
         })
-    }
-
-    /// The square of a depth that holds a point, and where in it.
-    fn square(ptex_face: u32, depth: u8, u: f64, v: f64) -> (Location, f64, f64) {
-        let count = f64::from(1_u32 << depth);
-        let [i, j] = [u, v].map(|t| (t * count).floor().clamp(0.0, count - 1.0));
-        let location = Location { ptex_face, u: i as u16, v: j as u16, depth };
-        (location, u * count - i, v * count - j)
     }
 
     fn value(&self, value: u32) -> [f64; 2] {
@@ -97,4 +97,13 @@ impl<'a> FaceVaryingEvaluator<'a> {
         let corners = values.iter().zip(weights).map(|(&value, weight)| self.value(value).map(|c| weight * c));
         corners.fold([0.0; 2], |sum, corner| [sum[0] + corner[0], sum[1] + corner[1]])
     }
+}
+
+/// The squares of a depth that a coordinate lies in or on the border of, and where in them.
+fn squares(t: f64, depth: u8) -> impl Iterator<Item = (u16, f64)> {
+    let count = f64::from(1_u32 << depth);
+    let place = (t * count).floor().clamp(0.0, count - 1.0);
+    let local = t * count - place;
+    let below = (local == 0.0 && place > 0.0).then_some((place as u16).wrapping_sub(1));
+    std::iter::once((place as u16, local)).chain(below.map(|place| (place, 1.0)))
 }
