@@ -56,7 +56,7 @@ fn tiles_that_uvs_use_but_have_no_file_are_refused_by_name() {
     let told = refusal(&request, &quad_to(1.5, 0.5));
     assert_eq!(told, "no file for tile 1002, which UV (1.5, 0.5) uses, expected a.1002.exr");
     let told = refusal(&request, &quad_to(-0.5, 0.5));
-    assert_eq!(told, "UV (-0.5, 0), which is in no tile, expected u from 0 to 10 and v from 0 to 900");
+    assert_eq!(told, "UV (-0.5, 0.5), which is in no tile, expected u from 0 to 10 and v from 0 to 900");
     let none = DisplacementRequest::new(folder.path().join("c.<UDIM>.exr"));
     assert!(refusal(&none, &quad_to(1.0, 1.0)).starts_with("no file of any tile, expected files such as "));
     let nowhere = DisplacementRequest::new(folder.path().join("none/c.<UDIM>.exr"));
