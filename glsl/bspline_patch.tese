@@ -228,21 +228,6 @@ Evaluated evaluate(Parameter u, Parameter v, PatchInfo info)
     return result;
 }
 
-// Texture coordinates of a patch, or their derivatives times 12.
-vec2 tex_coord(uint place, vec4 nu, vec4 nv, float scale)
-{
-    SceneTables scene = push.frame.v.scene;
-    if (scene.v.patch_tex_coords.v[16u * place] == NONE) {
-        return vec2(0.0);
-    }
-    vec3 p[16];
-    [[dont_unroll]] for (uint i = 0u; i < 16u; ++i) {
-        p[i] = vec3(scene.v.tex_coords.v[scene.v.patch_tex_coords.v[16u * place + i]], 0.0);
-    }
-    precise vec3 result = weigh_patch(p, nu, nv) / scale;
-    return without_sign_of_zero(result).xy;
-}
-
 precise float between_corners(vec4 at, Parameter u, Parameter v)
 {
     precise float low = u.s * at.x + u.t * at.y;
@@ -251,15 +236,46 @@ precise float between_corners(vec4 at, Parameter u, Parameter v)
     return result;
 }
 
-// Where the displacement of a point is looked up, and its level of detail.
-MapPlace map_place(Object object, DisplacementMap map, uint place, Parameter u, Parameter v, vec4 nu, vec4 nv, out float lod)
+// Texture coordinates at a point of a patch, and their derivatives, times 12 as the patch's tangents. `n` and `d` are the weights
+// there.
+struct TexPoint {
+    vec2 at;
+    vec2 along_u;
+    vec2 along_v;
+};
+
+TexPoint tex_point(Object object, uint place, Parameter u, Parameter v, vec4 nu, vec4 du, vec4 nv, vec4 dv)
 {
     SceneTables scene = push.frame.v.scene;
+    TexPoint result = TexPoint(vec2(0.0), vec2(0.0), vec2(0.0));
+    if (scene.v.patch_tex_coords.v[16u * place] == NONE) {
+        return result;
+    }
+    vec3 p[16];
+    [[dont_unroll]] for (uint i = 0u; i < 16u; ++i) {
+        p[i] = vec3(scene.v.tex_coords.v[scene.v.patch_tex_coords.v[16u * place + i]], 0.0);
+    }
+    result.along_u = weigh_patch(p, du, nv).xy;
+    result.along_v = weigh_patch(p, nu, dv).xy;
+    // Of bilinear coordinates the rows outside are extrapolations, other ones on each side of an edge.
+    if ((object.flags & OBJECT_LINEAR_TEX_COORDS) != 0u) {
+        result.at = vec2(between_corners(vec4(p[5].x, p[6].x, p[10].x, p[9].x), u, v),
+                         between_corners(vec4(p[5].y, p[6].y, p[10].y, p[9].y), u, v));
+    } else {
+        result.at = patch_position(p, nu, nv).xy;
+    }
+    result.at = without_sign_of_zero(vec3(result.at, 0.0)).xy;
+    return result;
+}
+
+// Where the displacement of a point is looked up, but for its texture coordinates, and its level of detail.
+MapPlace map_place(Object object, uint place, Parameter u, Parameter v, out float lod)
+{
     PatchInfo info = push.patches.v[place].info;
     MapPlace result;
-    result.uv = map.layout_kind == LAYOUT_FACES ? vec2(0.0) : tex_coord(place, nu, nv, 36.0);
     result.ptex_face = info.ptex_face;
     ptex_place(info, u, v, result.u, result.v);
+    SceneTables scene = push.frame.v.scene;
     lod = between_corners(corner_densities(face_lods(scene, object, info.ptex_face), info), u, v);
     return result;
 }
@@ -274,7 +290,12 @@ vec3 displace(inout Evaluated point)
     for (bool is_open = object.map != NONE; is_open; is_open = false) {
         DisplacementMap map = scene.v.maps.v[object.map];
         float lod;
-        MapPlace own = map_place(object, map, point.place, point.u, point.v, point.nu, point.nv, lod);
+        MapPlace own = map_place(object, point.place, point.u, point.v, lod);
+        TexPoint tex = TexPoint(vec2(0.0), vec2(0.0), vec2(0.0));
+        if (map.layout_kind != LAYOUT_FACES) {
+            tex = tex_point(object, point.place, point.u, point.v, point.nu, point.du, point.nv, point.dv);
+        }
+        own.uv = tex.at;
         MapPlace place = own;
         vec3 direction = point.normal;
         // Across a crease, and at corners, the direction and the texture coordinates are not this patch's own.
@@ -290,7 +311,10 @@ vec3 displace(inout Evaluated point)
             PatchInfo info = push.patches.v[decider.place].info;
             basis(decider.u, decider.v, patch_crease(info), push.patches.v[decider.place].sharpness, nu, du, nv, dv);
             direction = without_sign_of_zero(unit_normal(weigh_patch(p, du, nv), weigh_patch(p, nu, dv)));
-            place = map_place(object, map, decider.place, decider.u, decider.v, nu, nv, lod);
+            place = map_place(object, decider.place, decider.u, decider.v, lod);
+            if (map.layout_kind != LAYOUT_FACES) {
+                place.uv = tex_point(object, decider.place, decider.u, decider.v, nu, du, nv, dv).at;
+            }
         }
         for (bool is_limit = point.limit != NONE; is_limit; is_limit = false) {
             LimitSeat seat = scene.v.limit_seats.v[point.limit];
@@ -302,8 +326,8 @@ vec3 displace(inout Evaluated point)
         vec2 along_u = vec2(scale, 0.0);
         vec2 along_v = vec2(0.0, scale);
         if (map.layout_kind != LAYOUT_FACES) {
-            along_u = tex_coord(point.place, point.du, point.nv, 1.0);
-            along_v = tex_coord(point.place, point.nu, point.dv, 1.0);
+            along_u = tex.along_u;
+            along_v = tex.along_v;
         }
         vec3 da = displacement_vector(object, map, map_change(map, own, along_u, lod), direction);
         vec3 db = displacement_vector(object, map, map_change(map, own, along_v, lod), direction);
@@ -385,7 +409,8 @@ void main()
         vec4 nv;
         vec4 dv;
         basis(u, v, patch_crease(info), patch_sharpness, nu, du, nv, dv);
-        st = tex_coord(own_place(), nu, nv, 36.0);
+        Object object = push.frame.v.scene.v.objects.v[patch_places.y];
+        st = tex_point(object, own_place(), u, v, nu, du, nv, dv).at;
     }
     vec3 shading_normal = DISPLACED ? displace(point) : point.normal;
     // -2 stands for a factor of 1 beside edges with more segments.

@@ -10,6 +10,8 @@ const uint OBJECT_IN_HULL = 1;
 const uint OBJECT_HIDES_BACKS = 2;
 // The transform mirrors.
 const uint OBJECT_MIRRORED = 4;
+// Its texture coordinates are bilinear in every face.
+const uint OBJECT_LINEAR_TEX_COORDS = 8;
 
 // A mesh at a place. "First" names a place in a table of all meshes or objects.
 struct Object {

@@ -3,6 +3,7 @@
 use glam::{Affine3A, Vec3};
 use planish_shaders::Object;
 use planish_subdiv::ControlMesh;
+use planish_subdiv::mesh::FaceVaryingInterpolation;
 use planish_subdiv::tables::MeshRanges;
 use planish_subdiv::topology::NONE;
 
@@ -10,6 +11,7 @@ use planish_subdiv::topology::NONE;
 const IN_HULL: u32 = 1;
 const HIDES_BACKS: u32 = 2;
 const MIRRORED: u32 = 4;
+const LINEAR_TEX_COORDS: u32 = 8;
 
 /// A mesh at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,6 +93,7 @@ pub(crate) fn displace(object: &mut Object, map: u32, bound: f32) {
 pub(crate) struct MeshFacts {
     cage: CageFacts,
     in_hull: bool,
+    linear_tex_coords: bool,
     ptex_face_count: u32,
 }
 
@@ -98,7 +101,8 @@ impl MeshFacts {
     pub fn new(mesh: &ControlMesh, ranges: &MeshRanges) -> Self {
         // Chaikin's rule has weights below 0, and edits move points anywhere.
         let in_hull = mesh.edits.is_empty() && mesh.options.creasing == planish_subdiv::mesh::Creasing::Uniform;
-        Self { cage: CageFacts::of_mesh(mesh), in_hull, ptex_face_count: ranges.ptex_faces.len() as u32 }
+        let linear_tex_coords = mesh.options.face_varying == FaceVaryingInterpolation::All;
+        Self { cage: CageFacts::of_mesh(mesh), in_hull, linear_tex_coords, ptex_face_count: ranges.ptex_faces.len() as u32 }
     }
 }
 
@@ -123,7 +127,8 @@ pub(crate) fn objects(descs: &[ObjectDesc], facts: &[MeshFacts], ranges: &[MeshR
             to_world: columns(&desc.to_world),
             flags: flag(facts.in_hull, IN_HULL)
                 | flag(desc.hides_backs, HIDES_BACKS)
-                | flag(desc.is_mirrored(), MIRRORED),
+                | flag(desc.is_mirrored(), MIRRORED)
+                | flag(facts.linear_tex_coords, LINEAR_TEX_COORDS),
             first_slot: sizes.slots,
             first_mesh_slot: range.slots.start,
             vertex_count: range.cage_points.len() as u32,
