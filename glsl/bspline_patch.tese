@@ -280,9 +280,73 @@ MapPlace map_place(Object object, uint place, Parameter u, Parameter v, out floa
     return result;
 }
 
-// Moves a point by its object's displacement map. The direction becomes the normal that it is moved along; returns the normal of
-// the displaced surface.
-vec3 displace(inout Evaluated point)
+// Whether the direction and the texture coordinates of a displaced point are another patch's, across a crease.
+bool is_decided_across(Evaluated point)
+{
+    return point.limit == NONE && point.decider.place != NONE && point.decider.place != point.place;
+}
+
+// Texture coordinates and what else is known of a point: in the patch that it was evaluated in, in the one that decides where it is
+// displaced to, and in its own. A loop, so that drivers compile its long body once.
+struct TexPoints {
+    TexPoint evaluated;
+    vec2 deciding;
+    vec2 own;
+};
+
+TexPoints tex_points(Evaluated point, Parameter u, Parameter v, bool wants_deciding)
+{
+    Object object = push.frame.v.scene.v.objects.v[patch_places.y];
+    TexPoints result;
+    [[dont_unroll]] for (uint i = 0u; i < 3u; ++i) {
+        bool is_wanted = i == 0u ? DISPLACED : (i == 1u ? wants_deciding : TEX_COORDS);
+        uint place = i == 0u ? point.place : (i == 1u ? point.decider.place : own_place());
+        Parameter at_u = point.u;
+        Parameter at_v = point.v;
+        if (i == 1u) {
+            at_u = point.decider.u;
+            at_v = point.decider.v;
+        }
+        if (i == 2u) {
+            at_u = u;
+            at_v = v;
+        }
+        for (bool is_open = is_wanted; is_open; is_open = false) {
+            vec4 nu;
+            vec4 du;
+            vec4 nv;
+            vec4 dv;
+            basis(at_u, at_v, patch_crease(push.patches.v[place].info), push.patches.v[place].sharpness, nu, du, nv, dv);
+            TexPoint found = tex_point(object, place, at_u, at_v, nu, du, nv, dv);
+            if (i == 0u) {
+                result.evaluated = found;
+            } else if (i == 1u) {
+                result.deciding = found.at;
+            } else {
+                result.own = found.at;
+            }
+        }
+    }
+    return result;
+}
+
+// The direction in which the patch across a crease displaces.
+vec3 deciding_normal(BorderPoint decider)
+{
+    vec3 p[16];
+    border_points(decider, p);
+    vec4 nu;
+    vec4 du;
+    vec4 nv;
+    vec4 dv;
+    PatchInfo info = push.patches.v[decider.place].info;
+    basis(decider.u, decider.v, patch_crease(info), push.patches.v[decider.place].sharpness, nu, du, nv, dv);
+    return without_sign_of_zero(unit_normal(weigh_patch(p, du, nv), weigh_patch(p, nu, dv)));
+}
+
+// Moves a point by its object's displacement map. The normal becomes the direction that it is moved in; returns the normal of the
+// displaced surface.
+vec3 displace(inout Evaluated point, TexPoints tex)
 {
     SceneTables scene = push.frame.v.scene;
     Object object = scene.v.objects.v[patch_places.y];
@@ -291,46 +355,28 @@ vec3 displace(inout Evaluated point)
         DisplacementMap map = scene.v.maps.v[object.map];
         float lod;
         MapPlace own = map_place(object, point.place, point.u, point.v, lod);
-        TexPoint tex = TexPoint(vec2(0.0), vec2(0.0), vec2(0.0));
-        if (map.layout_kind != LAYOUT_FACES) {
-            tex = tex_point(object, point.place, point.u, point.v, point.nu, point.du, point.nv, point.dv);
-        }
-        own.uv = tex.at;
+        own.uv = tex.evaluated.at;
         MapPlace place = own;
         vec3 direction = point.normal;
         // Across a crease, and at corners, the direction and the texture coordinates are not this patch's own.
-        bool is_decided = point.limit == NONE && point.decider.place != NONE && point.decider.place != point.place;
-        for (bool is_other = is_decided; is_other; is_other = false) {
-            BorderPoint decider = point.decider;
-            vec3 p[16];
-            border_points(decider, p);
-            vec4 nu;
-            vec4 du;
-            vec4 nv;
-            vec4 dv;
-            PatchInfo info = push.patches.v[decider.place].info;
-            basis(decider.u, decider.v, patch_crease(info), push.patches.v[decider.place].sharpness, nu, du, nv, dv);
-            direction = without_sign_of_zero(unit_normal(weigh_patch(p, du, nv), weigh_patch(p, nu, dv)));
-            place = map_place(object, decider.place, decider.u, decider.v, lod);
-            if (map.layout_kind != LAYOUT_FACES) {
-                place.uv = tex_point(object, decider.place, decider.u, decider.v, nu, du, nv, dv).at;
-            }
+        for (bool is_other = is_decided_across(point); is_other; is_other = false) {
+            direction = deciding_normal(point.decider);
+            place = map_place(object, point.decider.place, point.decider.u, point.decider.v, lod);
+            place.uv = tex.deciding;
         }
         for (bool is_limit = point.limit != NONE; is_limit; is_limit = false) {
             LimitSeat seat = scene.v.limit_seats.v[point.limit];
             direction = normal_to_world(object, scene.v.limits.v[seat.canonical].normal);
             place.uv = seat.uv;
         }
-        point.position = displaced(point.position, displacement_vector(object, map, sample_map(map, place, lod), direction));
+        bool is_of_faces = map.layout_kind == LAYOUT_FACES;
         float scale = 12.0 * halvings(patch_depth(push.patches.v[point.place].info));
-        vec2 along_u = vec2(scale, 0.0);
-        vec2 along_v = vec2(0.0, scale);
-        if (map.layout_kind != LAYOUT_FACES) {
-            along_u = tex.along_u;
-            along_v = tex.along_v;
-        }
-        vec3 da = displacement_vector(object, map, map_change(map, own, along_u, lod), direction);
-        vec3 db = displacement_vector(object, map, map_change(map, own, along_v, lod), direction);
+        vec2 along_u = is_of_faces ? vec2(scale, 0.0) : tex.evaluated.along_u;
+        vec2 along_v = is_of_faces ? vec2(0.0, scale) : tex.evaluated.along_v;
+        MapSamples samples = sample_around(map, place, own, lod);
+        point.position = displaced(point.position, displacement_vector(object, map, samples.value, direction));
+        vec3 da = displacement_vector(object, map, samples.along_s * along_u.x + samples.along_t * along_u.y, direction);
+        vec3 db = displacement_vector(object, map, samples.along_s * along_v.x + samples.along_t * along_v.y, direction);
         shading_normal = displaced_normal(point.along_u, point.along_v, da, db, point.normal);
         point.normal = direction;
     }
@@ -402,17 +448,14 @@ void main()
         point = evaluate(u, v, info);
     }
     vec2 st = vec2(0.0);
-    if (TEX_COORDS) {
-        // This patch's own, even where another one decides.
-        vec4 nu;
-        vec4 du;
-        vec4 nv;
-        vec4 dv;
-        basis(u, v, patch_crease(info), patch_sharpness, nu, du, nv, dv);
-        Object object = push.frame.v.scene.v.objects.v[patch_places.y];
-        st = tex_point(object, own_place(), u, v, nu, du, nv, dv).at;
+    vec3 shading_normal = point.normal;
+    if (DISPLACED || TEX_COORDS) {
+        TexPoints tex = tex_points(point, u, v, DISPLACED && is_decided_across(point));
+        st = tex.own;
+        if (DISPLACED) {
+            shading_normal = displace(point, tex);
+        }
     }
-    vec3 shading_normal = DISPLACED ? displace(point) : point.normal;
     // -2 stands for a factor of 1 beside edges with more segments.
     float factor = CUT ? -max(inner_factors.x, inner_factors.y) * float(piece_place.z) : max(max(inner_factors.x, inner_factors.y), 1.0);
     put_surface_point(point.position, point.normal, shading_normal, vec2(u.t, v.t), st, info, patch_words.w,

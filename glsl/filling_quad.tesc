@@ -32,7 +32,8 @@ vec3 displace(Object object, uint limit, PatchInfo info, vec2 uv, inout vec3 pos
     place.ptex_face = info.ptex_face;
     ptex_place(info, Parameter(uv.x, 1.0 - uv.x), Parameter(uv.y, 1.0 - uv.y), place.u, place.v);
     float lod = density_at(face_lods(scene, object, info.ptex_face), ptex_uv(info, uv));
-    position = displaced(position, displacement_vector(object, map, sample_map(map, place, lod), normal));
+    MapSamples samples = sample_around(map, place, place, lod);
+    position = displaced(position, displacement_vector(object, map, samples.value, normal));
     if (map.layout_kind == LAYOUT_FACES) {
         // How the tangents run in the Ptex face is not known.
         return own_normal;
@@ -40,8 +41,8 @@ vec3 displace(Object object, uint limit, PatchInfo info, vec2 uv, inout vec3 pos
     LimitTangents tangents = scene.v.limit_tangents.v[limit];
     vec3 a = to_world_vector(object, tangents.a);
     vec3 b = to_world_vector(object, tangents.b);
-    vec3 da = displacement_vector(object, map, map_change(map, place, seat.along_a, lod), normal);
-    vec3 db = displacement_vector(object, map, map_change(map, place, seat.along_b, lod), normal);
+    vec3 da = displacement_vector(object, map, samples.along_s * seat.along_a.x + samples.along_t * seat.along_a.y, normal);
+    vec3 db = displacement_vector(object, map, samples.along_s * seat.along_b.x + samples.along_t * seat.along_b.y, normal);
     return displaced_normal(a, b, da, db, own_normal);
 }
 

@@ -159,41 +159,56 @@ vec3 sample_map(DisplacementMap map, MapPlace place, float lod)
     float finer = floor(lod);
     precise float t = lod - finer;
     precise float s = 1.0 - t;
-    vec3 result = sample_level(map, place, tile, inside, uint(finer));
-    if (t != 0.0) {
-        result = mix_texels(result, sample_level(map, place, tile, inside, uint(finer) + 1u), vec2(s, t));
+    vec3 levels[2];
+    uint count = t != 0.0 ? 2u : 1u;
+    [[dont_unroll]] for (uint i = 0u; i < count; ++i) {
+        levels[i] = sample_level(map, place, tile, inside, uint(finer) + i);
     }
-    return result;
+    return count == 2u ? mix_texels(levels[0], levels[1], vec2(s, t)) : levels[0];
 }
 
-// The change of the displacement along a direction of texture coordinates, or of parameters: by differences over two texels.
-vec3 map_change(DisplacementMap map, MapPlace place, vec2 along, float lod)
+// A displacement, and how it changes around: along texture coordinates, or parameters of the Ptex face.
+struct MapSamples {
+    vec3 value;
+    vec3 along_s;
+    vec3 along_t;
+};
+
+// The value at a place; changes around another one, by differences over two texels. A loop, so that drivers compile the filter once.
+MapSamples sample_around(DisplacementMap map, MapPlace place, MapPlace middle, float lod)
 {
     vec2 step = map.texel * exp2(max(lod, 0.0));
-    vec3 result = vec3(0.0);
-    for (int axis = 0; axis < 2; ++axis) {
-        MapPlace low = place;
-        MapPlace high = place;
-        float reach = 2.0 * step[axis];
-        if (map.layout_kind == LAYOUT_FACES) {
-            float at = axis == 0 ? place.u.t : place.v.t;
-            vec2 ends = clamp(at + vec2(-step[axis], step[axis]), 0.0, 1.0);
-            reach = ends.y - ends.x;
-            Parameter first = Parameter(ends.x, 1.0 - ends.x);
-            Parameter last = Parameter(ends.y, 1.0 - ends.y);
-            if (axis == 0) {
-                low.u = first;
-                high.u = last;
-            } else {
-                low.v = first;
-                high.v = last;
-            }
-        } else {
-            low.uv[axis] -= step[axis];
-            high.uv[axis] += step[axis];
-        }
-        result += (sample_map(map, high, lod) - sample_map(map, low, lod)) * (along[axis] / reach);
+    MapSamples result = MapSamples(vec3(0.0), vec3(0.0), vec3(0.0));
+    vec2 at = map.layout_kind == LAYOUT_FACES ? vec2(middle.u.t, middle.v.t) : middle.uv;
+    vec4 ends = vec4(at - step, at + step);
+    if (map.layout_kind == LAYOUT_FACES) {
+        ends = clamp(ends, 0.0, 1.0);
     }
+    [[dont_unroll]] for (uint i = 0u; i < 5u; ++i) {
+        MapPlace looked_up = place;
+        if (i != 0u) {
+            // Low s, high s, low t, high t.
+            bool is_s = i <= 2u;
+            float end = i == 1u ? ends.x : (i == 2u ? ends.z : (i == 3u ? ends.y : ends.w));
+            looked_up = middle;
+            looked_up.uv = is_s ? vec2(end, middle.uv.y) : vec2(middle.uv.x, end);
+            if (is_s) {
+                looked_up.u = Parameter(end, 1.0 - end);
+            } else {
+                looked_up.v = Parameter(end, 1.0 - end);
+            }
+        }
+        vec3 found = sample_map(map, looked_up, lod);
+        if (i == 0u) {
+            result.value = found;
+        } else if (i <= 2u) {
+            result.along_s += i == 1u ? -found : found;
+        } else {
+            result.along_t += i == 3u ? -found : found;
+        }
+    }
+    result.along_s /= ends.z - ends.x;
+    result.along_t /= ends.w - ends.y;
     return result;
 }
 
