@@ -99,6 +99,10 @@ fn check(text: &str, options: RefineOptions, unjudged: usize) -> Result<(), Stri
         return Ok(());
     }
     points.write(&dump);
+    if let Some(keep) = std::env::var_os("ST_KEEP") {
+        fs::copy(&mesh, Path::new(&keep).join("m.obj")).unwrap();
+        fs::copy(&dump, Path::new(&keep).join("d.ply")).unwrap();
+    }
     let faults = Report::of_values(&mesh, &dump)?.value_faults(unjudged);
     if faults.is_empty() { Ok(()) } else { Err(faults.join("\n  ")) }
 }
@@ -157,7 +161,8 @@ fn last(classes: &[u32], mut corner: u32) -> u32 {
 
 #[test]
 fn values_of_random_cages_are_the_limit() {
-    check_all(&SEEDS.collect::<Vec<_>>(), |&seed| {
+    let only: Option<u64> = std::env::var("ST_SEED").ok().map(|t| t.parse().unwrap());
+    check_all(&SEEDS.filter(|s| only.is_none_or(|o| o == *s)).collect::<Vec<_>>(), |&seed| {
         let crease_patches = [CreasePatches::Single, CreasePatches::Infinite, CreasePatches::None][seed as usize % 3];
         let options = RefineOptions { max_level: (seed % 5) as u32, crease_patches, uniform: seed % 11 == 0 };
         let text = random_cage(seed).to_obj("A random cage.");

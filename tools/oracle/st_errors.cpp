@@ -25,6 +25,8 @@ static void add(StErrors& errors, ValueEvaluator& evaluator, const Dump& dump, u
     try {
         const Vec3 expected = evaluator.evaluate((int)dump.face[vertex], u, v);
         const double error = std::hypot(s - expected.x, t - expected.y) / largest;
+        if (getenv("ST_DEBUG") && error > 1e-6)
+            fprintf(stderr, "vertex %u face %d u %g v %g error %g\n", vertex, (int)dump.face[vertex], u, v, error);
         errors.worst.take(error, vertex, expected);
         errors.sum += error;
         ++errors.count;
@@ -39,7 +41,12 @@ StErrors compare_st(const LimitOracle& oracle, const Dump& dump, const std::vect
         largest = std::max({largest, std::fabs(oracle.cage().values[value].x), std::fabs(oracle.cage().values[value].y)});
     if (!(largest > 0))
         largest = 1;
-    const auto refined = std::make_shared<RefinedValues>(Cage(oracle.cage()));
+    auto is_semi_sharp = [](float sharpness) { return sharpness > 0 && sharpness < infinite_sharpness; };
+    const Cage& cage = oracle.cage();
+    const bool has_semi_sharp =
+        std::any_of(cage.crease_sharpness.begin(), cage.crease_sharpness.end(), is_semi_sharp) ||
+        std::any_of(cage.corner_sharpness.begin(), cage.corner_sharpness.end(), is_semi_sharp);
+    const auto refined = std::make_shared<RefinedValues>(Cage(cage), has_semi_sharp);
     const size_t thread_count = (size_t)oracle.options().thread_count;
     std::vector<StErrors> errors(thread_count);
     std::vector<std::thread> threads;
