@@ -25,8 +25,6 @@ static void add(StErrors& errors, ValueEvaluator& evaluator, const Dump& dump, u
     try {
         const Vec3 expected = evaluator.evaluate((int)dump.face[vertex], u, v);
         const double error = std::hypot(s - expected.x, t - expected.y) / largest;
-        if (getenv("ST_DEBUG") && error > 1e-6)
-            fprintf(stderr, "vertex %u face %d u %g v %g error %g\n", vertex, (int)dump.face[vertex], u, v, error);
         errors.worst.take(error, vertex, expected);
         errors.sum += error;
         ++errors.count;

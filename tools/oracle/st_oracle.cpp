@@ -17,11 +17,19 @@ namespace {
 
 // Halvings after which a face is flat.
 constexpr int max_depth = 44;
-// Semi-sharp is below 10, and decays by about one a level.
-constexpr int decay_levels = 12;
 
 bool is_semi_sharp(float sharpness) {
     return sharpness > 0 && sharpness < infinite_sharpness;
+}
+
+// After so many levels nothing of a cage is semi-sharp any more: sharpness falls by one a level, by Chaikin's rule to no
+// more than that of the sharpest neighbour less one.
+int decay_levels(const Cage& cage) {
+    float sharpest = 0;
+    for (const std::vector<float>* sharpness : {&cage.crease_sharpness, &cage.corner_sharpness})
+        for (float s : *sharpness)
+            sharpest = is_semi_sharp(s) ? std::max(sharpest, s) : sharpest;
+    return (int)std::ceil(sharpest) + 1;
 }
 
 bool is_linear(const Cage& cage) {
@@ -164,7 +172,7 @@ RefinedValues::RefinedValues(Cage&& cage, bool has_rules_that_decay)
     if (!refiner_)
         fail("OpenSubdiv rejected the mesh, or a part of it");
     if (has_rules_that_decay) {
-        Far::TopologyRefiner::AdaptiveOptions adaptive(decay_levels);
+        Far::TopologyRefiner::AdaptiveOptions adaptive(decay_levels(cage_));
         adaptive.considerFVarChannels = true;
         adaptive.useInfSharpPatch = true;
         refiner_->RefineAdaptive(adaptive);

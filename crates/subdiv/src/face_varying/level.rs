@@ -42,7 +42,7 @@ impl ChannelLevel {
         let mut of_level = Self { corners: vec![0; level.origins.len()], is_linear, ..Self::default() };
         let mut numbers = Numbers::default();
         for vertex in used_vertices(level) {
-            numbers.begin();
+            numbers.begin(level.tag(vertex).is_non_manifold());
             for spoke in level.all_spokes(vertex) {
                 let index = channel.indices[spoke as usize];
                 let next = of_level.values.len() as u32;
@@ -243,13 +243,15 @@ struct Numbers {
     previous: Option<(u32, u32)>,
     /// Values so far.
     count: usize,
+    has_order: bool,
 }
 
 impl Numbers {
-    /// Begins with another vertex.
-    fn begin(&mut self) {
+    /// Begins with another vertex. Where it is not manifold the faces have no order, and all values are corners.
+    fn begin(&mut self, is_non_manifold: bool) {
         self.known.clear();
         (self.first, self.previous, self.count) = (None, None, 0);
+        self.has_order = !is_non_manifold;
     }
 
     /// The number of the value that the next face names: `next` if it is a new one.
@@ -258,7 +260,7 @@ impl Numbers {
             Some((previous, number)) if previous == index => number,
             _ => {
                 let first = *self.first.get_or_insert(index);
-                let is_taken_for_new = self.count == 2 && first != index;
+                let is_taken_for_new = self.has_order && self.count == 2 && first != index;
                 let known = self.known.get(&index).copied().filter(|_| !is_taken_for_new);
                 known.unwrap_or_else(|| {
                     self.known.entry(index).or_insert(next);
