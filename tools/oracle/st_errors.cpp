@@ -39,7 +39,12 @@ StErrors compare_st(const LimitOracle& oracle, const Dump& dump, const std::vect
         largest = std::max({largest, std::fabs(oracle.cage().values[value].x), std::fabs(oracle.cage().values[value].y)});
     if (!(largest > 0))
         largest = 1;
-    const auto refined = std::make_shared<RefinedValues>(Cage(oracle.cage()));
+    auto is_semi_sharp = [](float sharpness) { return sharpness > 0 && sharpness < infinite_sharpness; };
+    const Cage& cage = oracle.cage();
+    const bool has_semi_sharp =
+        std::any_of(cage.crease_sharpness.begin(), cage.crease_sharpness.end(), is_semi_sharp) ||
+        std::any_of(cage.corner_sharpness.begin(), cage.corner_sharpness.end(), is_semi_sharp);
+    const auto refined = std::make_shared<RefinedValues>(Cage(cage), has_semi_sharp);
     const size_t thread_count = (size_t)oracle.options().thread_count;
     std::vector<StErrors> errors(thread_count);
     std::vector<std::thread> threads;

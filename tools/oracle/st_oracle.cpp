@@ -17,44 +17,57 @@ namespace {
 
 // Halvings after which a face is flat.
 constexpr int max_depth = 44;
-// Semi-sharp is below 10, and decays by about one a level.
-constexpr int decay_levels = 12;
 
 bool is_semi_sharp(float sharpness) {
     return sharpness > 0 && sharpness < infinite_sharpness;
 }
 
-bool has_semi_sharp(const Cage& cage) {
-    return std::any_of(cage.crease_sharpness.begin(), cage.crease_sharpness.end(), is_semi_sharp) ||
-           std::any_of(cage.corner_sharpness.begin(), cage.corner_sharpness.end(), is_semi_sharp);
+// After so many levels nothing of a cage is semi-sharp any more: sharpness falls by one a level, by Chaikin's rule to no
+// more than that of the sharpest neighbour less one.
+int decay_levels(const Cage& cage) {
+    float sharpest = 0;
+    for (const std::vector<float>* sharpness : {&cage.crease_sharpness, &cage.corner_sharpness})
+        for (float s : *sharpness)
+            sharpest = is_semi_sharp(s) ? std::max(sharpest, s) : sharpest;
+    return (int)std::ceil(sharpest) + 1;
 }
 
 bool is_linear(const Cage& cage) {
     return cage.options.GetFVarLinearInterpolation() == Sdc::Options::FVAR_LINEAR_ALL;
 }
 
-// The value of a vertex in a face, or -1.
-Index value_at(const Far::TopologyLevel& level, Index face, Index vertex) {
-    Far::ConstIndexArray corners = level.GetFaceVertices(face);
-    const int corner = corners.FindIndex(vertex);
-    return corner < 0 ? -1 : level.GetFaceFVarValues(face, 0)[corner];
+// The value of a corner. OpenSubdiv may number one value twice where the faces around a vertex name several by turns; at
+// non-manifold vertices, whose values all stay, that would look like a seam: there equal numbers are one value.
+Index value_of_corner(const Far::TopologyLevel& level, const std::vector<Vec3>& values, Index face, int corner) {
+    const Index value = level.GetFaceFVarValues(face, 0)[corner], vertex = level.GetFaceVertices(face)[corner];
+    if (!level.IsVertexNonManifold(vertex))
+        return value;
+    for (Index other : level.GetVertexFaces(vertex)) {
+        const Index known = level.GetFaceFVarValues(other, 0)[level.GetFaceVertices(other).FindIndex(vertex)];
+        if (values[known].x == values[value].x && values[known].y == values[value].y)
+            return known;
+    }
+    return value;
 }
 
 // Whether two faces at an edge have the same values at both its ends.
-bool is_continuous(const Far::TopologyLevel& level, Index edge, Index a, Index b) {
+bool is_continuous(const Far::TopologyLevel& level, const std::vector<Vec3>& values, Index edge, Index a, Index b) {
     Far::ConstIndexArray ends = level.GetEdgeVertices(edge);
-    return value_at(level, a, ends[0]) == value_at(level, b, ends[0]) &&
-           value_at(level, a, ends[1]) == value_at(level, b, ends[1]);
+    auto value_at = [&](Index face, Index vertex) {
+        return value_of_corner(level, values, face, level.GetFaceVertices(face).FindIndex(vertex));
+    };
+    return value_at(a, ends[0]) == value_at(b, ends[0]) && value_at(a, ends[1]) == value_at(b, ends[1]);
 }
 
 // The faces around a vertex that are reached from a face across edges that are neither infinitely sharp nor seams.
-int sector_size(const Far::TopologyLevel& level, Index vertex, Index face, int& cut_count) {
+int sector_size(const Far::TopologyLevel& level, const std::vector<Vec3>& values, Index vertex, Index face,
+                int& cut_count) {
     std::set<Index> sector{face};
     Far::ConstIndexArray edges = level.GetVertexEdges(vertex);
     auto is_cut = [&](Index edge) {
         Far::ConstIndexArray beside = level.GetEdgeFaces(edge);
         return level.GetEdgeSharpness(edge) >= infinite_sharpness || beside.size() != 2 ||
-               !is_continuous(level, edge, beside[0], beside[1]);
+               !is_continuous(level, values, edge, beside[0], beside[1]);
     };
     cut_count = (int)std::count_if(edges.begin(), edges.end(), is_cut);
     for (bool grown = true; grown;) {
@@ -96,7 +109,6 @@ private:
     void add_face(Index face, int first_corner) {
         Far::ConstIndexArray corners = level_.GetFaceVertices(face);
         Far::ConstIndexArray edges = level_.GetFaceEdges(face);
-        Far::ConstIndexArray face_values = level_.GetFaceFVarValues(face, 0);
         const int size = corners.size();
         cage_.face_sizes.push_back(size);
         std::set<Index> met;
@@ -105,7 +117,7 @@ private:
             if (!met.insert(corners[corner]).second)
                 throw Pathological();
             cage_.face_points.push_back(point_of(corners[corner]));
-            cage_.face_values.push_back(value_of(face_values[corner]));
+            cage_.face_values.push_back(value_of(value_of_corner(level_, values_, face, corner)));
         }
         for (int i = 0; i < size; ++i) {
             const int a = point_of(corners[i]), b = point_of(corners[(i + 1) % size]);
@@ -155,11 +167,12 @@ private:
 } // namespace
 
 // ---------------------------------------------------------------- refinement
-RefinedValues::RefinedValues(Cage&& cage) : cage_(std::move(cage)), refiner_(make_refiner(cage_)) {
+RefinedValues::RefinedValues(Cage&& cage, bool has_rules_that_decay)
+    : cage_(std::move(cage)), refiner_(make_refiner(cage_)) {
     if (!refiner_)
         fail("OpenSubdiv rejected the mesh, or a part of it");
-    if (has_semi_sharp(cage_)) {
-        Far::TopologyRefiner::AdaptiveOptions adaptive(decay_levels);
+    if (has_rules_that_decay) {
+        Far::TopologyRefiner::AdaptiveOptions adaptive(decay_levels(cage_));
         adaptive.considerFVarChannels = true;
         adaptive.useInfSharpPatch = true;
         refiner_->RefineAdaptive(adaptive);
@@ -212,19 +225,28 @@ Index ValueNode::edge(int corner) const {
     return level().GetFaceEdges(face_)[(corner + first_corner_) % size_];
 }
 
+bool ValueNode::has_semi_sharp_corner() const {
+    const Far::TopologyLevel here = level();
+    for (int i = 0; i < size_; ++i)
+        if (is_semi_sharp(here.GetVertexSharpness(vertex(i))) || has_semi_sharp_edge(here, vertex(i)))
+            return true;
+    return false;
+}
+
 // False where the face is certainly no regular patch of the channel: Bfr, which knows for sure, may crash there.
 bool ValueNode::may_be_regular() const {
     const Far::TopologyLevel here = level();
+    if (has_semi_sharp_corner())
+        return false;
     for (int i = 0; i < 4; ++i) {
         const Index corner = vertex(i);
-        if (here.IsVertexNonManifold(corner) || is_semi_sharp(here.GetVertexSharpness(corner)) ||
-            has_semi_sharp_edge(here, corner))
+        if (here.IsVertexNonManifold(corner))
             return false;
         for (Index face : here.GetVertexFaces(corner))
             if (here.GetFaceVertices(face).size() != 4)
                 return false;
         int cut_count = 0;
-        const int size = sector_size(here, corner, face_, cut_count);
+        const int size = sector_size(here, refined_->values(level_), corner, face_, cut_count);
         if (cut_count == 0 ? size != 4 || here.GetVertexSharpness(corner) > 0 : size > 2 || cut_count < 2)
             return false;
     }
@@ -255,7 +277,7 @@ void ValueNode::cut_out() {
         return;
     const Far::TopologyLevel here = level();
     Cage ring = ValueRing(here, refined_->values(level_), refined_->cage()).cut_out(face_, first_corner_);
-    refined_ = std::make_shared<RefinedValues>(std::move(ring));
+    refined_ = std::make_shared<RefinedValues>(std::move(ring), has_semi_sharp_corner());
     level_ = face_ = first_corner_ = 0;
     is_cut_ = true;
 }

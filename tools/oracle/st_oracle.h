@@ -14,7 +14,7 @@ class RefinedValues {
 public:
     // One level everywhere, or, where semi-sharp rules must first decay, as far as that takes around all that is
     // irregular: the rules at seams depend on how sharp a vertex was before.
-    explicit RefinedValues(Cage&& cage);
+    RefinedValues(Cage&& cage, bool has_rules_that_decay);
 
     const Cage& cage() const { return cage_; }
     int level_count() const { return (int)values_.size(); }
@@ -46,6 +46,7 @@ private:
     Cage::Index vertex(int corner) const;
     Cage::Index edge(int corner) const;
     bool may_be_regular() const;
+    bool has_semi_sharp_corner() const;
     // Whether the face is one regular patch of the channel; then it has been cut out, and its surface is prepared.
     bool is_regular();
     bool has_children() const;

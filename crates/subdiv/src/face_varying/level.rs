@@ -40,15 +40,17 @@ impl ChannelLevel {
         let mode = level.options.face_varying;
         let is_linear = mode == FaceVaryingInterpolation::All;
         let mut of_level = Self { corners: vec![0; level.origins.len()], is_linear, ..Self::default() };
-        let mut number_of = HashMap::new();
+        let mut numbers = Numbers::default();
         for vertex in used_vertices(level) {
-            number_of.clear();
+            numbers.begin(level.tag(vertex).is_non_manifold());
             for spoke in level.all_spokes(vertex) {
                 let index = channel.indices[spoke as usize];
-                of_level.corners[spoke as usize] = *number_of.entry(index).or_insert_with(|| {
+                let next = of_level.values.len() as u32;
+                let number = numbers.number(index, next);
+                if number == next {
                     of_level.values.push(channel.values[index as usize].map(f64::from));
-                    of_level.values.len() as u32 - 1
-                });
+                }
+                of_level.corners[spoke as usize] = number;
             }
         }
         of_level.find_seams(level);
@@ -230,4 +232,44 @@ impl ChannelLevel {
 
 fn used_vertices(level: &Level) -> impl Iterator<Item = u32> + '_ {
     (0..level.starts.len() as u32).filter(|&vertex| level.starts[vertex as usize] != crate::topology::NONE)
+}
+
+/// Numbers the values that the faces around a vertex name in turn, each as often as it begins anew in OpenSubdiv's eyes:
+/// of faces that name a, b, a and b the last one has a value of its own.
+#[derive(Default)]
+struct Numbers {
+    known: HashMap<u32, u32>,
+    first: Option<u32>,
+    previous: Option<(u32, u32)>,
+    /// Values so far.
+    count: usize,
+    has_order: bool,
+}
+
+impl Numbers {
+    /// Begins with another vertex. Where it is not manifold the faces have no order, and all values are corners.
+    fn begin(&mut self, is_non_manifold: bool) {
+        self.known.clear();
+        (self.first, self.previous, self.count) = (None, None, 0);
+        self.has_order = !is_non_manifold;
+    }
+
+    /// The number of the value that the next face names: `next` if it is a new one.
+    fn number(&mut self, index: u32, next: u32) -> u32 {
+        let number = match self.previous {
+            Some((previous, number)) if previous == index => number,
+            _ => {
+                let first = *self.first.get_or_insert(index);
+                let is_taken_for_new = self.has_order && self.count == 2 && first != index;
+                let known = self.known.get(&index).copied().filter(|_| !is_taken_for_new);
+                known.unwrap_or_else(|| {
+                    self.known.entry(index).or_insert(next);
+                    self.count += 1;
+                    next
+                })
+            }
+        };
+        self.previous = Some((index, number));
+        number
+    }
 }

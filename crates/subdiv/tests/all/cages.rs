@@ -1,10 +1,14 @@
 //! Cages of the tests.
 
+use std::collections::HashMap;
+
 use planish_generate::cage::Cage;
 use planish_generate::random::Random;
 use planish_generate::random_cage::{Features, Recipe};
+use planish_generate::seams::corner_classes;
 use planish_subdiv::mesh::{
-    BoundaryInterpolation, ControlMesh, Corner, Crease, Creasing, EditOperation, HierarchicalEdit, TriangleSubdivision,
+    BoundaryInterpolation, ControlMesh, Corner, Crease, Creasing, EditOperation, FaceVaryingChannel,
+    FaceVaryingInterpolation, HierarchicalEdit, TriangleSubdivision,
 };
 
 pub fn mesh(positions: Vec<[f32; 3]>, faces: &[Vec<u32>]) -> ControlMesh {
@@ -174,6 +178,43 @@ pub fn random(seed: u64) -> ControlMesh {
             mesh.edits.push(HierarchicalEdit { path, operation });
         }
     }
+    mesh
+}
+
+/// A mesh with a face-varying channel whose values are its vertices' x and y, moved apart on the sides of random seams.
+pub fn seamed(mut mesh: ControlMesh, seed: u64) -> ControlMesh {
+    use FaceVaryingInterpolation::{All, Boundaries, CornersOnly, CornersPlus1, CornersPlus2, None};
+    let mut random = Random::new(seed ^ 0x5EA);
+    let mut faces: Vec<Vec<u32>> = Vec::new();
+    let mut rest = mesh.face_vertices.as_slice();
+    for &size in &mesh.face_sizes {
+        let (face, after) = rest.split_at(size as usize);
+        faces.push(face.to_vec());
+        rest = after;
+    }
+    let percent = random.pick(&[5, 20, 50]);
+    let seams: HashMap<[u32; 2], bool> = faces
+        .iter()
+        .flat_map(|face| face.iter().copied().zip(face.iter().copied().cycle().skip(1)))
+        .map(|(a, b)| ([a.min(b), a.max(b)], random.percent(percent)))
+        .collect();
+    let indices = corner_classes(&faces, |[a, b]| seams[&[a.min(b), a.max(b)]]);
+    // A class is called after its first corner, so it can name the value.
+    let value = |(corner, &vertex): (usize, &u32)| {
+        let [x, y, _] = mesh.positions[vertex as usize];
+        [x + 0.01 * (corner % 7) as f32, y - 0.02 * (corner % 5) as f32]
+    };
+    let values = mesh.face_vertices.iter().enumerate().map(value).collect();
+    mesh.face_varying = vec![FaceVaryingChannel { name: "st".to_owned(), values, indices }];
+    mesh.options.face_varying = random.pick(&[None, CornersOnly, CornersPlus1, CornersPlus2, Boundaries, All]);
+    mesh
+}
+
+/// A mesh with a face-varying channel without seams, whose values are its vertices' x and y.
+pub fn with_continuous_values(mut mesh: ControlMesh) -> ControlMesh {
+    let values = mesh.positions.iter().map(|p| [p[0], p[1]]).collect();
+    let indices = mesh.face_vertices.clone();
+    mesh.face_varying = vec![FaceVaryingChannel { name: "st".to_owned(), values, indices }];
     mesh
 }
 

@@ -2,6 +2,7 @@
 
 mod cages;
 mod edits;
+mod face_varying;
 mod merge;
 mod selection;
 mod surface;
