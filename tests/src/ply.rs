@@ -7,7 +7,11 @@ use std::path::Path;
 /// The properties of a vertex, in the order and with the types of the interface.
 const VERTEX_PROPERTIES: &str = "float x, float y, float z, float nx, float ny, float nz, float u, float v, int face, \
                                  uchar level, uchar kind";
-/// Bytes of a vertex: eight floats, an int and two bytes.
+/// Those that follow where the mesh has texture coordinates.
+const TEX_COORD_PROPERTIES: &str = ", float s, float t";
+/// Those that follow where the surface is displaced.
+const SHADING_PROPERTIES: &str = ", float sx, float sy, float sz";
+/// Bytes of a vertex without those: eight floats, an int and two bytes.
 const VERTEX_BYTES: usize = 8 * 4 + 4 + 2;
 /// Bytes of a triangle: its size in a byte, and three ints.
 const TRIANGLE_BYTES: usize = 1 + 3 * 4;
@@ -29,10 +33,38 @@ pub struct Vertex {
     pub level: u8,
     /// Kind of its patch.
     pub kind: u8,
+    /// Texture coordinates; 0 where there are none.
+    pub tex_coord: [f32; 2],
+    /// Normal of the displaced surface; 0 where it is not.
+    pub shading_normal: [f32; 3],
+}
+
+/// Which properties a dump's vertices have besides those of all dumps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Properties {
+    /// `s t`.
+    pub tex_coords: bool,
+    /// `sx sy sz`.
+    pub shading_normals: bool,
+}
+
+impl Properties {
+    const ALL: [Self; 4] = [
+        Self { tex_coords: false, shading_normals: false },
+        Self { tex_coords: true, shading_normals: false },
+        Self { tex_coords: false, shading_normals: true },
+        Self { tex_coords: true, shading_normals: true },
+    ];
+
+    fn vertex_bytes(self) -> usize {
+        VERTEX_BYTES + if self.tex_coords { 8 } else { 0 } + if self.shading_normals { 12 } else { 0 }
+    }
 }
 
 /// A dump, as its file has it.
 pub struct Dump {
+    /// What its vertices have.
+    pub properties: Properties,
     bytes: Vec<u8>,
     vertices: Range<usize>,
 }
@@ -46,10 +78,9 @@ impl Dump {
         let start = start.ok_or_else(|| fault("no header"))? + HEADER_END.len();
         let header = String::from_utf8_lossy(&bytes[..start]).into_owned();
         let vertex_count = count_after(&header, "element vertex ").ok_or_else(|| fault("no vertex count"))?;
-        if header != expected_header(vertex_count) {
-            return Err(fault(&format!("not the header of the interface:\n{header}")));
-        }
-        let vertices = start..start + vertex_count * VERTEX_BYTES;
+        let properties = Properties::ALL.into_iter().find(|&all| header == expected_header(vertex_count, all));
+        let properties = properties.ok_or_else(|| fault(&format!("not the header of the interface:\n{header}")))?;
+        let vertices = start..start + vertex_count * properties.vertex_bytes();
         let expected = vertices.end + vertex_count / 3 * TRIANGLE_BYTES;
         if bytes.len() != expected {
             return Err(fault(&format!("{} bytes, expected {expected}", bytes.len())));
@@ -58,14 +89,18 @@ impl Dump {
         if let Some(index) = (0..).zip(triangles).position(|(index, bytes)| bytes != triangle_bytes(3 * index)) {
             return Err(fault(&format!("triangle {index} is not made of the next three vertices")));
         }
-        Ok(Self { bytes, vertices })
+        Ok(Self { properties, bytes, vertices })
     }
 
     /// All vertices, three a triangle.
     pub fn vertices(&self) -> impl ExactSizeIterator<Item = Vertex> {
-        self.bytes[self.vertices.clone()].chunks_exact(VERTEX_BYTES).map(|bytes| {
-            let word = |index: usize| [0, 1, 2, 3].map(|byte| bytes[4 * index + byte]);
+        let properties = self.properties;
+        self.bytes[self.vertices.clone()].chunks_exact(properties.vertex_bytes()).map(move |bytes| {
+            let word_at = |first: usize| [0, 1, 2, 3].map(|byte| bytes[first + byte]);
+            let word = |index: usize| word_at(4 * index);
             let float = |index: usize| f32::from_le_bytes(word(index));
+            let last_float = |index: usize| f32::from_le_bytes(word_at(VERTEX_BYTES + 4 * index));
+            let first_of_shading = if properties.tex_coords { 2 } else { 0 };
             Vertex {
                 position: [0, 1, 2].map(float),
                 normal: [3, 4, 5].map(float),
@@ -73,16 +108,22 @@ impl Dump {
                 face: u32::from_le_bytes(word(8)),
                 level: bytes[VERTEX_BYTES - 2],
                 kind: bytes[VERTEX_BYTES - 1],
+                tex_coord: if properties.tex_coords { [0, 1].map(last_float) } else { [0.0; 2] },
+                shading_normal: if properties.shading_normals {
+                    [0, 1, 2].map(|axis| last_float(first_of_shading + axis))
+                } else {
+                    [0.0; 3]
+                },
             }
         })
     }
 
     /// Writes the triangles of the Ptex faces that `keep` keeps.
     pub fn write_faces(&self, path: &Path, keep: impl Fn(u32) -> bool) -> Result<(), String> {
-        let triangles = self.bytes[self.vertices.clone()].chunks_exact(3 * VERTEX_BYTES);
+        let triangles = self.bytes[self.vertices.clone()].chunks_exact(3 * self.properties.vertex_bytes());
         let face = |triangle: &[u8]| u32::from_le_bytes([32, 33, 34, 35].map(|byte: usize| triangle[byte]));
         let kept: Vec<&[u8]> = triangles.filter(|triangle| keep(face(triangle))).collect();
-        let mut bytes = expected_header(3 * kept.len()).into_bytes();
+        let mut bytes = expected_header(3 * kept.len(), self.properties).into_bytes();
         bytes.extend_from_slice(&kept.concat());
         bytes.extend((0..kept.len() as u32).flat_map(|index| triangle_bytes(3 * index)));
         fs::write(path, bytes).map_err(|error| format!("{}: {error}", path.display()))
@@ -107,8 +148,11 @@ fn count_after(header: &str, words: &str) -> Option<usize> {
     header.lines().find_map(|line| line.strip_prefix(words))?.parse().ok()
 }
 
-fn expected_header(vertex_count: usize) -> String {
-    let properties: String = VERTEX_PROPERTIES.split(", ").map(|property| format!("property {property}\n")).collect();
+fn expected_header(vertex_count: usize, properties: Properties) -> String {
+    let mut names = VERTEX_PROPERTIES.to_owned();
+    names.push_str(if properties.tex_coords { TEX_COORD_PROPERTIES } else { "" });
+    names.push_str(if properties.shading_normals { SHADING_PROPERTIES } else { "" });
+    let properties: String = names.split(", ").map(|property| format!("property {property}\n")).collect();
     let triangle_count = vertex_count / 3;
     format!(
         "ply\nformat binary_little_endian 1.0\nelement vertex {vertex_count}\n{properties}element face \

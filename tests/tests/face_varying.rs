@@ -15,6 +15,8 @@ use planish_subdiv::tables::{FaceVaryingEvaluator, Tables};
 use planish_subdiv::topology::{Location, NONE};
 use planish_tests::oracle::Report;
 use planish_tests::parallel::check_all;
+use planish_tests::ply::Dump;
+use planish_tests::program::Planish;
 use planish_tests::repository::{scenes, stem};
 
 /// Values of `facevaryinginterpolateboundary`.
@@ -117,7 +119,7 @@ fn values_of_every_scene_in_every_mode_are_the_limit() {
     assert!(cases.len() > 6 * 20, "there are scenes with texture coordinates");
     check_all(&cases, |(name, text, mode)| {
         let crease_patches = [CreasePatches::Infinite, CreasePatches::Single, CreasePatches::None][*mode as usize % 3];
-        let options = RefineOptions { max_level: 1 + *mode % 3, crease_patches, uniform: false };
+        let options = RefineOptions { max_level: 1 + *mode % 3, crease_patches, ..RefineOptions::default() };
         check(text, options, 0).map_err(|fault| format!("{name}, mode {mode}: {fault}"))?;
         if mode % 3 != 2 {
             return Ok(());
@@ -162,7 +164,8 @@ fn last(classes: &[u32], mut corner: u32) -> u32 {
 fn values_of_random_cages_are_the_limit() {
     check_all(&SEEDS.collect::<Vec<_>>(), |&seed| {
         let crease_patches = [CreasePatches::Single, CreasePatches::Infinite, CreasePatches::None][seed as usize % 3];
-        let options = RefineOptions { max_level: (seed % 5) as u32, crease_patches, uniform: seed % 11 == 0 };
+        let (max_level, uniform) = ((seed % 5) as u32, seed % 11 == 0);
+        let options = RefineOptions { max_level, crease_patches, uniform, ..RefineOptions::default() };
         let text = random_cage(seed).to_obj("A random cage.");
         check(&text, options, usize::MAX).map_err(|fault| format!("seed {seed}: {fault}"))
     });
@@ -180,4 +183,28 @@ fn other_values_are_not_taken_for_the_limit() {
     fs::write(&mesh, with_mode(&text, 1)).expect("a temporary file can be written");
     let faults = Report::of_values(&mesh, &dump).expect("the oracle answers").value_faults(0);
     assert!(faults.iter().any(|fault| fault.starts_with("max_st_err")), "{faults:?}");
+}
+
+#[test]
+fn dumps_of_every_scene_have_the_values_of_the_limit() {
+    const FLAGS: [&str; 3] = ["--tess 5.3", "--tess 7 --method fas --spacing equal", "--tess 12 --spacing fractional-even"];
+    let mut cases = Vec::new();
+    // Each in two of the modes, and so in all of them.
+    for (first, mesh) in (0..).zip(scenes().into_iter().filter(|mesh| stem(mesh).starts_with("uv_"))) {
+        let text = fs::read_to_string(&mesh).expect("scenes can be read");
+        let modes = [first % 6, (first + 3) % 6];
+        let case = |mode: u32| (stem(&mesh).to_owned(), with_mode(&text, mode), FLAGS[(mode + first) as usize % 3]);
+        cases.extend(modes.map(case));
+    }
+    check_all(&cases, |(name, text, flags)| {
+        let folder = tempfile::tempdir().expect("a temporary folder can be made");
+        let [mesh, dump] = [format!("{name}.obj"), "dump.ply".to_owned()].map(|name| folder.path().join(name));
+        fs::write(&mesh, text).expect("a temporary file can be written");
+        Planish::dump(&mesh, &dump).flags(flags).run().silent_success()?;
+        if !Dump::read(&dump)?.properties.tex_coords {
+            return Err("the dump has no texture coordinates".to_owned());
+        }
+        let faults = Report::of_values(&mesh, &dump)?.value_faults(0);
+        if faults.is_empty() { Ok(()) } else { Err(format!("{flags}: {}", faults.join("\n  "))) }
+    });
 }

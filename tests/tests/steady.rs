@@ -86,7 +86,7 @@ fn a_zoom_has_no_jumps() {
 /// The triangles of a dump, sorted: their order may be another one every time.
 fn sorted_triangles(vertices: impl Iterator<Item = Vertex>) -> Vec<Vec<[u32; 11]>> {
     let bits = |vertex: &Vertex| {
-        let Vertex { position: [x, y, z], normal: [nx, ny, nz], uv: [u, v], face, level, kind } = *vertex;
+        let Vertex { position: [x, y, z], normal: [nx, ny, nz], uv: [u, v], face, level, kind, .. } = *vertex;
         let [x, y, z, nx, ny, nz, u, v] = [x, y, z, nx, ny, nz, u, v].map(f32::to_bits);
         [face, u32::from(level), u32::from(kind), u, v, x, y, z, nx, ny, nz]
     };

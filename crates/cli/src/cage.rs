@@ -163,7 +163,10 @@ impl Cage {
         // Chaikin's rule has weights below 0 where an edge sharper than 1 becomes smooth.
         let is_within = mesh.options.creasing == Creasing::Uniform || !has("semi_sharp_edges");
         let eye = instance.transform.inverse().transform_point3(camera.eye);
-        is_closed && is_manifold && is_within && eye.is_finite() && backs_are_hidden(mesh, eye.to_array())
+        // A displaced surface may fold over, and reach out to an eye outside of the cage.
+        let is_displaced = self.displacements.get(instance.mesh).is_some_and(Option::is_some);
+        !is_displaced
+            && is_closed && is_manifold && is_within && eye.is_finite() && backs_are_hidden(mesh, eye.to_array())
     }
 }
 
