@@ -34,7 +34,8 @@ Dump read_dump(const std::string& path) {
         fail("PLY: vertex property `face' is missing");
 
     Dump dump;
-    std::vector<float>* columns[] = {&dump.x, &dump.y, &dump.z, &dump.nx, &dump.ny, &dump.nz, &dump.u, &dump.v, &dump.s, &dump.t};
+    std::vector<float>* columns[] = {&dump.x,  &dump.y, &dump.z, &dump.nx, &dump.ny,
+                                     &dump.nz, &dump.u, &dump.v, &dump.s,  &dump.t};
     for (size_t k = 0; k < file.floats.size(); ++k)
         columns[k]->swap(file.floats[k].values);
     dump.face.swap(file.integers[0].values);

@@ -36,10 +36,13 @@ static void add(StErrors& errors, ValueEvaluator& evaluator, const Dump& dump, u
 StErrors compare_st(const LimitOracle& oracle, const Dump& dump, const std::vector<uint32_t>& vertices) {
     double largest = 0;
     for (int value : oracle.cage().face_values)
-        largest = std::max({largest, std::fabs(oracle.cage().values[value].x), std::fabs(oracle.cage().values[value].y)});
+        largest =
+            std::max({largest, std::fabs(oracle.cage().values[value].x), std::fabs(oracle.cage().values[value].y)});
     if (!(largest > 0))
         largest = 1;
-    auto is_semi_sharp = [](float sharpness) { return sharpness > 0 && sharpness < infinite_sharpness; };
+    auto is_semi_sharp = [](float sharpness) {
+        return sharpness > 0 && sharpness < infinite_sharpness;
+    };
     const Cage& cage = oracle.cage();
     const bool has_semi_sharp =
         std::any_of(cage.crease_sharpness.begin(), cage.crease_sharpness.end(), is_semi_sharp) ||

@@ -22,8 +22,8 @@ bool is_semi_sharp(float sharpness) {
     return sharpness > 0 && sharpness < infinite_sharpness;
 }
 
-// After so many levels nothing of a cage is semi-sharp any more: sharpness falls by one a level, by Chaikin's rule to no
-// more than that of the sharpest neighbour less one.
+// After so many levels nothing of a cage is semi-sharp any more: sharpness falls by one a level, by Chaikin's rule to
+// no more than that of the sharpest neighbour less one.
 int decay_levels(const Cage& cage) {
     float sharpest = 0;
     for (const std::vector<float>* sharpness : {&cage.crease_sharpness, &cage.corner_sharpness})
@@ -36,8 +36,8 @@ bool is_linear(const Cage& cage) {
     return cage.options.GetFVarLinearInterpolation() == Sdc::Options::FVAR_LINEAR_ALL;
 }
 
-// The value of a corner. OpenSubdiv may number one value twice where the faces around a vertex name several by turns; at
-// non-manifold vertices, whose values all stay, that would look like a seam: there equal numbers are one value.
+// The value of a corner. OpenSubdiv may number one value twice where the faces around a vertex name several by turns;
+// at non-manifold vertices, whose values all stay, that would look like a seam: there equal numbers are one value.
 Index value_of_corner(const Far::TopologyLevel& level, const std::vector<Vec3>& values, Index face, int corner) {
     const Index value = level.GetFaceFVarValues(face, 0)[corner], vertex = level.GetFaceVertices(face)[corner];
     if (!level.IsVertexNonManifold(vertex))

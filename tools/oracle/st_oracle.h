@@ -62,7 +62,8 @@ private:
     std::map<int, std::unique_ptr<ValueNode>> children_;
 };
 
-// Evaluates the face-varying values of a cage, fast where one after another they lie on the same base face. One a thread.
+// Evaluates the face-varying values of a cage, fast where one after another they lie on the same base face. One a
+// thread.
 class ValueEvaluator {
 public:
     ValueEvaluator(const LimitOracle& oracle, std::shared_ptr<RefinedValues> refined)

@@ -57,8 +57,8 @@ extern const char* const cage_options_manual;
 
 // Reads an OBJ file with OpenSubdiv's `t` tags. The scheme is Catmull-Clark, unless the file's name begins with loop_
 // or bilinear_ or the options say so; without a tag or option, boundary edges are interpolated and corners are not, and
-// face-varying values are linear at `corners plus 1`. Fails where a face names a vertex or a value that is not there, or
-// where only some corners have a value.
+// face-varying values are linear at `corners plus 1`. Fails where a face names a vertex or a value that is not there,
+// or where only some corners have a value.
 Cage read_cage(const std::string& path, const CageOptions& options);
 
 // Null where OpenSubdiv rejects the cage.

@@ -2,7 +2,7 @@
 use glam::{DVec2, DVec3};
 
 use super::SceneFile;
-use super::parts::{disc_center, discs, sheet, stars};
+use super::parts::{discs, sheet, spoke, stars};
 use crate::cage::Cage;
 use crate::tags::{BoundaryRule, INFINITE};
 use crate::{sheets, solids};
@@ -83,21 +83,15 @@ fn closed() -> Vec<SceneFile> {
     let top = cube.clone();
     let is_upper = |cage: &Cage, vertex: u32| cage.positions[vertex as usize].y > 0.0;
     let unfolded = cube.clone().with_seams(SEED, |edge| edge.iter().any(|&end| is_upper(&top, end)), aslant);
-    let torus = solids::torus(8, 6);
-    let is_on_seam = |cage: &Cage, [a, b]: [u32; 2]| {
-        [a, b].iter().all(|&end| end < 6 || end % 6 == 0) && a != b && {
-            let [p, q] = [a, b].map(|end| cage.positions[end as usize]);
-            p.distance(q) < 1.5
-        }
-    };
-    let around = torus.clone();
+    let (torus, across) = (solids::torus(8, 6), 6);
+    let is_on_seam = |edge: [u32; 2]| edge.iter().all(|&end| end < across) || edge.iter().all(|&end| end % across == 0);
     vec![
         SceneFile::new("uv_cube_sides", "A cube of six charts: three meet at each vertex.", all_sides),
         SceneFile::new("uv_cube_unfolded", "A cube cut open along its upper and upright edges.", unfolded),
         SceneFile::new(
             "uv_torus",
             "A torus cut open along two circles that cross.",
-            torus.with_seams(SEED, |edge| is_on_seam(&around, edge), aslant),
+            torus.with_seams(SEED, is_on_seam, aslant),
         ),
         SceneFile::new(
             "uv_continuous",
@@ -160,9 +154,9 @@ fn sharp() -> Vec<SceneFile> {
 fn odd() -> Vec<SceneFile> {
     let valences = [3, 5, 6];
     let spokes = |arms: u32| -> Vec<Vec<[f64; 2]>> {
-        let ends = (0..).zip(valences).flat_map(|(place, valence)| {
-            (0..arms.min(valence)).map(move |arm| super::parts::spoke(place, valence, arm).to_vec())
-        });
+        let ends = (0..)
+            .zip(valences)
+            .flat_map(|(place, valence)| (0..arms.min(valence)).map(move |arm| spoke(place, valence, arm).to_vec()));
         ends.collect()
     };
     let cut_discs = |arms: u32| {
@@ -175,8 +169,7 @@ fn odd() -> Vec<SceneFile> {
         cut_above(sheets::waved_grid(4, 4), &[&line([-2.0, 0.0], [1.0, 0.0], 4), &line([-1.0, 2.0], [0.0, -1.0], 1)])
             .with_boundary(rule)
     };
-    let upper = solids::rocket();
-    let prism = upper.clone().with_charts(SEED, |face| (face % 7 / 3) as u32, aslant);
+    let rocket = solids::rocket().with_charts(SEED, |face| (face % 7 / 3) as u32, aslant);
     vec![
         SceneFile::new("uv_dart", "Seams that end inside a sheet, one at both ends.", dart(sheet())),
         SceneFile::new("uv_disc_dart", "Seams that end at vertices of valence 3, 5 and 6.", cut_discs(1)),
@@ -202,7 +195,7 @@ fn odd() -> Vec<SceneFile> {
             "Seams that end at a boundary with sharp corners.",
             boundary(BoundaryRule::EdgeAndCorner),
         ),
-        SceneFile::new("uv_ngon", "Charts of triangles and quads.", prism),
+        SceneFile::new("uv_ngon", "Charts of triangles and quads.", rocket),
     ]
 }
 
@@ -211,9 +204,8 @@ fn cut_creased(valences: &[u32]) -> Cage {
     let cage = stars(valences, &[1.5]);
     let lines: Vec<Vec<[f64; 2]>> = (0..)
         .zip(valences)
-        .flat_map(|(place, &valence)| [1, valence - 1].map(|arm| super::parts::spoke(place, valence, arm).to_vec()))
+        .flat_map(|(place, &valence)| [1, valence - 1].map(|arm| spoke(place, valence, arm).to_vec()))
         .collect();
     let lines: Vec<&[[f64; 2]]> = lines.iter().map(Vec::as_slice).collect();
-    debug_assert!(disc_center(0) == 0.0, "discs lie side by side from the origin");
     cut_above(cage, &lines)
 }
