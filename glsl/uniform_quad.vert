@@ -13,5 +13,11 @@ void main()
     FillingQuads quads = FillingQuads(push.patches);
     LimitPoint limit = LimitPoints(push.points).v[quads.v[quad].corners[corner]];
     vec2 uv = vec2(corner == 1 || corner == 2, corner >= 2);
-    put_surface_point(limit.position, limit.normal, limit.normal, uv, vec2(0.0), quads.v[quad].info, push.first_patch_id + quad, KIND_FILLING, 1.0);
+    vec2 st = vec2(0.0);
+    if (TEX_COORDS) {
+        SceneTables scene = push.frame.v.scene;
+        uint own = scene.v.face_tex_coords.v[4u * quad + corner];
+        st = own == NONE ? st : scene.v.tex_coords.v[own];
+    }
+    put_surface_point(limit.position, limit.normal, limit.normal, uv, st, quads.v[quad].info, push.first_patch_id + quad, KIND_FILLING, 1.0);
 }

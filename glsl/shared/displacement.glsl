@@ -100,10 +100,11 @@ uint tile_at(DisplacementMap map, vec2 uv, out precise vec2 inside)
     [[dont_unroll]] for (uint i = 0u; i < 4u; ++i) {
         vec2 back = vec2(i & 1u, i >> 1);
         bool is_there = (back.x == 0.0 || uv.x == corner.x) && (back.y == 0.0 || uv.y == corner.y);
-        uint tile = is_there && found == NONE ? tile_number(map, corner - back) : NONE;
+        precise vec2 other = corner - back;
+        uint tile = is_there && found == NONE ? tile_number(map, other) : NONE;
         if (tile != NONE) {
             found = tile;
-            inside = uv - (corner - back);
+            inside = uv - other;
         }
     }
     return found;

@@ -178,7 +178,7 @@ struct SceneData {
     Weights texel_counts;    // of slots of meshes: texels of their map along an edge
     TexCoords tex_coords;
     Indices patch_tex_coords; // 16 of each patch
-    Indices face_tex_coords;  // 8 of each irregular face: at its limit points
+    Indices face_tex_coords;  // 8 of each irregular face: at its limit points; 4 of each face of uniform refinement
     LimitSeats limit_seats;
     LimitTangentTable limit_tangents;
     SlotDensities densities;

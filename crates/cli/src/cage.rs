@@ -166,7 +166,11 @@ impl Cage {
         // A displaced surface may fold over, and reach out to an eye outside of the cage.
         let is_displaced = self.displacements.get(instance.mesh).is_some_and(Option::is_some);
         !is_displaced
-            && is_closed && is_manifold && is_within && eye.is_finite() && backs_are_hidden(mesh, eye.to_array())
+            && is_closed
+            && is_manifold
+            && is_within
+            && eye.is_finite()
+            && backs_are_hidden(mesh, eye.to_array())
     }
 }
 

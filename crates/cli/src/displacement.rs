@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use planish_scene::Scene;
 use planish_gpu::Device;
 use planish_render::{DisplacementDesc, MapLayout, Surface};
+use planish_scene::Scene;
 use planish_scene::displacement::{DisplacementMap, DisplacementRequest, TileLayout, load_displacement};
 use planish_subdiv::ControlMesh;
 

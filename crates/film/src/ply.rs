@@ -109,11 +109,8 @@ where
 
 fn header(vertex_count: i32, properties: DumpProperties) -> String {
     let tex_coords = if properties.tex_coords { "property float s\nproperty float t\n" } else { "" };
-    let shading = if properties.shading_normals {
-        "property float sx\nproperty float sy\nproperty float sz\n"
-    } else {
-        ""
-    };
+    let shading =
+        if properties.shading_normals { "property float sx\nproperty float sy\nproperty float sz\n" } else { "" };
     format!(
         "ply\n\
          format binary_little_endian 1.0\n\

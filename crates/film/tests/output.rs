@@ -150,7 +150,9 @@ fn a_full_disk_leaves_the_old_file_and_no_other() {
         let path = folder.join(name);
         fs::write(&path, "old").unwrap();
         let written = match name {
-            "dump.ply" => write_ply_stream(&path, 30_000, DumpProperties::default(), (0..30_000).map(|_| DumpVertex::default())),
+            "dump.ply" => {
+                write_ply_stream(&path, 30_000, DumpProperties::default(), (0..30_000).map(|_| DumpVertex::default()))
+            }
             _ => write_image(&large, &path),
         };
         let message = written.unwrap_err().to_string();

@@ -72,7 +72,8 @@ fn a_stream_gives_the_bytes_of_the_slice() {
     // More than one buffer of the writer.
     let vertex_count = 90_000;
     write_ply(&slice, &(0..vertex_count).map(vertex).collect::<Vec<_>>()).unwrap();
-    write_ply_stream(&stream, u64::from(vertex_count), DumpProperties::default(), (0..vertex_count).map(vertex)).unwrap();
+    write_ply_stream(&stream, u64::from(vertex_count), DumpProperties::default(), (0..vertex_count).map(vertex))
+        .unwrap();
     assert!(fs::read(slice).unwrap() == fs::read(stream).unwrap());
 }
 
@@ -90,7 +91,9 @@ fn wrong_counts_are_refused_and_leave_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("dump.ply");
     let message = |announced: u64, found: u32| {
-        let error = write_ply_stream(&path, announced, DumpProperties::default(), (0..found).map(vertex)).unwrap_err().to_string();
+        let error = write_ply_stream(&path, announced, DumpProperties::default(), (0..found).map(vertex))
+            .unwrap_err()
+            .to_string();
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "{error}");
         error.replace(&path.display().to_string(), "dump.ply")
     };

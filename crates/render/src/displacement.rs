@@ -4,7 +4,7 @@ use planish_gpu::{Buffer, Device};
 use planish_shaders as shaders;
 use planish_shaders::{DisplacementMap, MapLevel, MapTile};
 use planish_subdiv::ControlMesh;
-use planish_subdiv::tables::{DensitySlots, MeshRanges};
+use planish_subdiv::tables::{DensitySlots, FaceVaryingTable, LimitSeat, MeshRanges, Tables};
 
 use crate::error::Error;
 use crate::upload::{address, table};
@@ -152,14 +152,13 @@ impl Maps {
 }
 
 /// Texture coordinates as the shaders read them: values, those of patches, those of irregular faces.
-pub(crate) fn tex_coords(
-    device: &Device,
-    tables: &planish_subdiv::tables::Tables,
-) -> Result<[Buffer; 3], Error> {
+pub(crate) fn tex_coords(device: &Device, tables: &Tables) -> Result<[Buffer; 3], Error> {
     let channel = tables.face_varying.first();
     let values = channel.map_or(&[][..], |channel| &channel.values);
     let patches: Vec<u32> = channel.map_or_else(Vec::new, |channel| channel.patches.concat());
-    let faces: Vec<u32> = channel.map_or_else(Vec::new, |channel| channel.faces.concat());
+    // Tables have one of the two.
+    let faces = |channel: &FaceVaryingTable| [channel.faces.concat(), channel.filling.concat()].concat();
+    let faces: Vec<u32> = channel.map_or_else(Vec::new, faces);
     Ok([
         table(device, "texture coordinates", values)?,
         table(device, "texture coordinates of patches", &patches)?,
@@ -168,8 +167,8 @@ pub(crate) fn tex_coords(
 }
 
 /// What the displacement at limit points is found by.
-pub(crate) fn limit_seats(tables: &planish_subdiv::tables::Tables) -> Vec<shaders::LimitSeat> {
-    let seat = |seat: &planish_subdiv::tables::LimitSeat| shaders::LimitSeat {
+pub(crate) fn limit_seats(tables: &Tables) -> Vec<shaders::LimitSeat> {
+    let seat = |seat: &LimitSeat| shaders::LimitSeat {
         canonical: seat.canonical,
         uv: seat.uv,
         along_a: seat.tangents[0],

@@ -102,7 +102,12 @@ impl MeshFacts {
         // Chaikin's rule has weights below 0, and edits move points anywhere.
         let in_hull = mesh.edits.is_empty() && mesh.options.creasing == planish_subdiv::mesh::Creasing::Uniform;
         let linear_tex_coords = mesh.options.face_varying == FaceVaryingInterpolation::All;
-        Self { cage: CageFacts::of_mesh(mesh), in_hull, linear_tex_coords, ptex_face_count: ranges.ptex_faces.len() as u32 }
+        Self {
+            cage: CageFacts::of_mesh(mesh),
+            in_hull,
+            linear_tex_coords,
+            ptex_face_count: ranges.ptex_faces.len() as u32,
+        }
     }
 }
 

@@ -79,7 +79,8 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
         .iter()
         .map(|module| {
             let knows = |constant: &&SpecConstant| module.spec_constants.iter().any(|known| known.id == constant.id);
-            let is_patch = module.name.starts_with("bspline_patch") || module.name.starts_with("filling_quad");
+            let is_patch =
+                ["bspline_patch", "filling_quad", "uniform_quad"].iter().any(|stem| module.name.starts_with(stem));
             patch_constants.iter().filter(|_| is_patch).filter(knows).copied().collect()
         })
         .collect();

@@ -5,7 +5,7 @@ use planish_shaders::precise::no_contraction_report;
 use planish_shaders::{self as shaders, ShaderModule};
 
 /// Functions whose arithmetic decides shared positions and normals, by module.
-const EVALUATION: [&str; 15] = [
+const EVALUATION: [&str; 25] = [
     "cubic_basis",
     "crease_basis",
     "weigh",
@@ -21,13 +21,26 @@ const EVALUATION: [&str; 15] = [
     "scaled",
     "unit_vector",
     "place",
+    "between_corners",
+    "ptex_place",
+    "mix_texels",
+    "from_end",
+    "centered",
+    "tile_at",
+    "sample_level",
+    "displacement_vector",
+    "displaced",
+    "linear",
 ];
 const WATERTIGHT: [(&ShaderModule, &[&str]); 5] = [
     (&shaders::bspline_patch_lean_tese::PROGRAM, &EVALUATION),
     (&shaders::bspline_patch_layers_tese::PROGRAM, &EVALUATION),
     (&shaders::bspline_patch_dump_tese::PROGRAM, &EVALUATION),
     (&shaders::bspline_patch_tesc::PROGRAM, &["reflected_point", "to_world"]),
-    (&shaders::filling_quad_tesc::PROGRAM, &["to_world", "normal_to_world", "unit_vector"]),
+    (
+        &shaders::filling_quad_tesc::PROGRAM,
+        &["to_world", "normal_to_world", "unit_vector", "mix_texels", "displacement_vector", "displaced", "linear"],
+    ),
 ];
 
 #[test]

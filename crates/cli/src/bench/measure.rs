@@ -46,7 +46,11 @@ pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) ->
     let objects = cage.objects(&camera);
     let mut plan = Plan {
         frame_camera: frame_camera(&camera, arguments.size),
-        needs: FrameNeeds { watertight, displaced: cage.is_displaced(), ..frame_needs(arguments.spacing.into(), tess_factor, &objects) },
+        needs: FrameNeeds {
+            watertight,
+            displaced: cage.is_displaced(),
+            ..frame_needs(arguments.spacing.into(), tess_factor, &objects)
+        },
         objects,
         camera,
         desc: SurfaceDesc { method, level, crease_patches, displaced: cage.is_displaced() },

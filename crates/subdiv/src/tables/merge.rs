@@ -206,8 +206,7 @@ impl Tables {
         table.indices.extend(part.limits.indices.iter().map(|&point| points[point as usize]));
         table.weights.extend(&part.limits.weights);
         let seats = part.limit_seats.iter();
-        self.limit_seats
-            .extend(seats.map(|seat| LimitSeat { canonical: seat.canonical + mesh.limits.start, ..*seat }));
+        self.limit_seats.extend(seats.map(|seat| LimitSeat { canonical: seat.canonical + mesh.limits.start, ..*seat }));
         mesh.stars = following(self.stars.count(), part.stars.count());
         self.stars.append(&part.stars, |point| points[point as usize]);
         mesh.filling = following(self.filling.len() as u32, part.filling.len() as u32);
@@ -231,10 +230,9 @@ impl Tables {
         let shift = |border: &Border| if border.part == Border::WHOLE { patch_shift(k) } else { coarse_shift };
         self.seams.extend(seams.map(|seams| PatchSeams {
             limits: limits(seams.limits),
-            borders:
-                seams.borders.map(|border| {
-                    border.map(|border| Border { patch: border.patch.wrapping_add(shift(&border)), ..border })
-                }),
+            borders: seams.borders.map(|border| {
+                border.map(|border| Border { patch: border.patch.wrapping_add(shift(&border)), ..border })
+            }),
         }));
         self.patches.extend(own.iter().map(|patch| RegularPatch {
             seams: if patch.seams == NONE {

@@ -161,7 +161,12 @@ fn first_patch_across(level: &Level, places: &[u32], edge: u32) -> Option<u32> {
 
 /// The patch of the same level that decides along an edge of a patch of a displaced surface, if it is another one: the first
 /// of those at a crease or a seam.
-pub(super) fn border_of_cut(level: &Level, channel: Option<&ChannelLevel>, places: &[u32], edge: u32) -> Option<Border> {
+pub(super) fn border_of_cut(
+    level: &Level,
+    channel: Option<&ChannelLevel>,
+    places: &[u32],
+    edge: u32,
+) -> Option<Border> {
     if !is_cut(level, channel, edge) {
         return None;
     }
