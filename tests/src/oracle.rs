@@ -59,17 +59,15 @@ impl Report {
         value.as_f64().unwrap_or_else(|| panic!("osd_oracle reports no number {field}"))
     }
 
-    /// What is wrong with face-varying values. Those of faces that cannot be judged may be as many as these.
-    pub fn value_faults(&self, unjudged: usize) -> Vec<String> {
+    /// What is wrong with face-varying values, all of which must have been judged.
+    pub fn value_faults(&self) -> Vec<String> {
         let mut faults = Vec::new();
-        for (field, most) in
-            [("max_st_err", VALUE_TOLERANCE), ("nonfinite_st", 0.0), ("pathological_st", unjudged as f64)]
-        {
+        for (field, most) in [("max_st_err", VALUE_TOLERANCE), ("nonfinite_st", 0.0)] {
             if self.number(field) > most {
                 faults.push(format!("{field} is {}, expected at most {most}", self.number(field)));
             }
         }
-        if self.number("st_compared") + self.number("pathological_st") != self.number("vertices") {
+        if self.number("st_compared") != self.number("vertices") {
             faults.push(format!("{} of {} are compared", self.number("st_compared"), self.number("vertices")));
         }
         if !faults.is_empty() {

@@ -90,7 +90,7 @@ fn mesh_of(text: &str) -> ControlMesh {
 }
 
 /// Judges the values of a mesh of an OBJ file's text.
-fn check(text: &str, options: RefineOptions, unjudged: usize) -> Result<(), String> {
+fn check(text: &str, options: RefineOptions) -> Result<(), String> {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     let [mesh, dump] = ["mesh.obj", "dump.ply"].map(|name| folder.path().join(name));
     fs::write(&mesh, text).expect("a temporary file can be written");
@@ -101,7 +101,7 @@ fn check(text: &str, options: RefineOptions, unjudged: usize) -> Result<(), Stri
         return Ok(());
     }
     points.write(&dump);
-    let faults = Report::of_values(&mesh, &dump)?.value_faults(unjudged);
+    let faults = Report::of_values(&mesh, &dump)?.value_faults();
     if faults.is_empty() { Ok(()) } else { Err(faults.join("\n  ")) }
 }
 
@@ -121,12 +121,12 @@ fn values_of_every_scene_in_every_mode_are_the_limit() {
         let crease_patches = [CreasePatches::Infinite, CreasePatches::Single, CreasePatches::None][*mode as usize % 3];
         let max_level = [2, 1, 3, 2, 1, 2][*mode as usize];
         let options = RefineOptions { max_level, crease_patches, ..RefineOptions::default() };
-        check(text, options, 0).map_err(|fault| format!("{name}, mode {mode}: {fault}"))?;
+        check(text, options).map_err(|fault| format!("{name}, mode {mode}: {fault}"))?;
         if mode % 3 != 2 {
             return Ok(());
         }
         let uniform = RefineOptions { max_level: 2, uniform: true, ..options };
-        check(text, uniform, 0).map_err(|fault| format!("{name}, mode {mode}, uniform: {fault}"))
+        check(text, uniform).map_err(|fault| format!("{name}, mode {mode}, uniform: {fault}"))
     });
 }
 
@@ -168,7 +168,7 @@ fn values_of_random_cages_are_the_limit() {
         let (max_level, uniform) = ((seed % 5) as u32, seed % 11 == 0);
         let options = RefineOptions { max_level, crease_patches, uniform, ..RefineOptions::default() };
         let text = random_cage(seed).to_obj("A random cage.");
-        check(&text, options, usize::MAX).map_err(|fault| format!("seed {seed}: {fault}"))
+        check(&text, options).map_err(|fault| format!("seed {seed}: {fault}"))
     });
 }
 
@@ -182,7 +182,7 @@ fn other_values_are_not_taken_for_the_limit() {
     let refinement = Refinement::new(&mesh_of(&text), options).expect("the scene can be refined");
     points_of(&Tables::new(&refinement)).write(&dump);
     fs::write(&mesh, with_mode(&text, 1)).expect("a temporary file can be written");
-    let faults = Report::of_values(&mesh, &dump).expect("the oracle answers").value_faults(0);
+    let faults = Report::of_values(&mesh, &dump).expect("the oracle answers").value_faults();
     assert!(faults.iter().any(|fault| fault.starts_with("max_st_err")), "{faults:?}");
 }
 
@@ -206,7 +206,7 @@ fn dumps_of_every_scene_have_the_values_of_the_limit() {
         if !Dump::read(&dump)?.properties.tex_coords {
             return Err("the dump has no texture coordinates".to_owned());
         }
-        let faults = Report::of_values(&mesh, &dump)?.value_faults(0);
+        let faults = Report::of_values(&mesh, &dump)?.value_faults();
         if faults.is_empty() { Ok(()) } else { Err(format!("{flags}: {}", faults.join("\n  "))) }
     });
 }

@@ -47,7 +47,12 @@ StErrors compare_st(const LimitOracle& oracle, const Dump& dump, const std::vect
     const bool has_semi_sharp =
         std::any_of(cage.crease_sharpness.begin(), cage.crease_sharpness.end(), is_semi_sharp) ||
         std::any_of(cage.corner_sharpness.begin(), cage.corner_sharpness.end(), is_semi_sharp);
-    const auto refined = std::make_shared<RefinedValues>(Cage(cage), has_semi_sharp);
+    // Holes are not refined, and Chaikin's rule beside them would not see all edges; without them all else is the same.
+    Cage whole = cage;
+    whole.hole_faces.clear();
+    if (cage.options.GetVtxBoundaryInterpolation() == OpenSubdiv::Sdc::Options::VTX_BOUNDARY_NONE)
+        whole.options.SetVtxBoundaryInterpolation(OpenSubdiv::Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    const auto refined = std::make_shared<RefinedValues>(std::move(whole), has_semi_sharp);
     const size_t thread_count = (size_t)oracle.options().thread_count;
     std::vector<StErrors> errors(thread_count);
     std::vector<std::thread> threads;
