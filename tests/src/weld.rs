@@ -180,5 +180,5 @@ fn weld(vertices: &[Vertex], by: Weld) -> Vec<u32> {
         let next = points.len() as u32;
         *points.entry([bits(vertex.position), normal]).or_insert(next)
     };
-    vertices.iter().map(|vertex| point_of(vertex)).collect()
+    vertices.iter().map(point_of).collect()
 }

@@ -12,7 +12,7 @@ use crate::cages::{cube, pole, prism, random, seamed, sheet, with_continuous_val
 use crate::surface::points;
 
 fn tables(mesh: &ControlMesh, max_level: u32) -> Tables {
-    let options = RefineOptions { max_level, crease_patches: CreasePatches::Single, uniform: false };
+    let options = RefineOptions { max_level, crease_patches: CreasePatches::Single, ..RefineOptions::default() };
     Tables::new(&Refinement::new(mesh, options).expect("a legal cage"))
 }
 
