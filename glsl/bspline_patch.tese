@@ -7,6 +7,7 @@
 #include "shared/crease.glsl"
 #include "shared/seams.glsl"
 #include "shared/displacement.glsl"
+#include "shared/tex_tree.glsl"
 #include "shared/surface.glsl"
 
 layout(constant_id = 1) const bool TRANSITION = false;
@@ -299,7 +300,7 @@ TexPoints tex_points(Evaluated point, Parameter u, Parameter v, bool wants_decid
     Object object = push.frame.v.scene.v.objects.v[patch_places.y];
     TexPoints result;
     [[dont_unroll]] for (uint i = 0u; i < 3u; ++i) {
-        bool is_wanted = i == 0u ? DISPLACED : (i == 1u ? wants_deciding : TEX_COORDS);
+        bool is_wanted = i == 1u ? wants_deciding : i == 0u || TEX_COORDS;
         uint place = i == 0u ? point.place : (i == 1u ? point.decider.place : own_place());
         Parameter at_u = point.u;
         Parameter at_v = point.v;
@@ -449,12 +450,14 @@ void main()
     }
     vec2 st = vec2(0.0);
     vec3 shading_normal = point.normal;
-    if (DISPLACED || TEX_COORDS) {
-        TexPoints tex = tex_points(point, u, v, DISPLACED && is_decided_across(point));
+    if (DISPLACED) {
+        TexPoints tex = tex_points(point, u, v, is_decided_across(point));
         st = tex.own;
-        if (DISPLACED) {
-            shading_normal = displace(point, tex);
-        }
+        shading_normal = displace(point, tex);
+    } else if (TEX_COORDS) {
+        SceneTables scene = push.frame.v.scene;
+        Object object = scene.v.objects.v[patch_places.y];
+        st = tree_tex_coord(scene, object, info.ptex_face - object.first_face, ptex_uv(info, vec2(u.t, v.t)));
     }
     // -2 stands for a factor of 1 beside edges with more segments.
     float factor = CUT ? -max(inner_factors.x, inner_factors.y) * float(piece_place.z) : max(max(inner_factors.x, inner_factors.y), 1.0);

@@ -5,6 +5,7 @@
 #include "shared/frame.glsl"
 #include "shared/entry.glsl"
 #include "shared/displacement.glsl"
+#include "shared/tex_tree.glsl"
 
 layout(vertices = 8) out;
 layout(location = 0) in uint list_place[];
@@ -70,8 +71,14 @@ void main()
         }
     }
     if (TEX_COORDS) {
-        uint own = scene.v.face_tex_coords.v[8u * face + (is_middle ? i : edge)];
-        tex_coord[gl_InvocationID] = own == NONE ? vec2(0.0) : scene.v.tex_coords.v[own];
+        uint at = is_middle ? i : edge;
+        if (DISPLACED) {
+            uint own = scene.v.face_tex_coords.v[8u * face + at];
+            tex_coord[gl_InvocationID] = own == NONE ? vec2(0.0) : scene.v.tex_coords.v[own];
+        } else {
+            PatchInfo info = faces.v[face].info;
+            tex_coord[gl_InvocationID] = tree_tex_coord(scene, object, info.ptex_face, ptex_uv(info, UVS[at]));
+        }
     }
     limit_position[gl_InvocationID] = position;
     limit_normal[gl_InvocationID] = normal;

@@ -177,8 +177,10 @@ struct SceneData {
     DisplacementMaps maps;
     Weights texel_counts;    // of slots of meshes: texels of their map along an edge
     TexCoords tex_coords;
-    Indices patch_tex_coords; // 16 of each patch
-    Indices face_tex_coords;  // 8 of each irregular face: at its limit points; 4 of each face of uniform refinement
+    Indices patch_tex_coords; // 16 of each patch: of the surface where it is displaced, else of the trees
+    Indices face_tex_coords;  // 8 of each irregular face, at its limit points; or 4 of each quad of the trees
+    Indices tex_nodes;        // four branches each
+    Indices tex_roots;        // the branch of each Ptex face
     LimitSeats limit_seats;
     LimitTangentTable limit_tangents;
     SlotDensities densities;

@@ -31,6 +31,9 @@ pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
     let plan = Plan::unseen(&cage, &arguments.surface, &arguments.view, range)?;
     let device = open_device(&arguments.device, console)?;
     let mut session = Session::new(&device, &cage, &plan, console)?;
+    if cage.has_uv() {
+        session.surface.set_tex_coords(&device, &cage.meshes())?;
+    }
     let start = Instant::now();
     let passes = DumpPasses::new(&device, &plan.desc, &plan.needs)?;
     session.pipelines_ms += milliseconds(start);

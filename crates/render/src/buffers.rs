@@ -7,7 +7,7 @@ use planish_subdiv::patch::{FillingQuad, PatchInfo, RegularPatch};
 use planish_subdiv::tables::{Border, IndexLists, IrregularFace, PatchSeams, Tables};
 use planish_subdiv::topology::NONE;
 
-use crate::displacement::{limit_seats, tex_coords};
+use crate::displacement::limit_seats;
 use crate::edit_points::targets;
 use crate::error::Error;
 use crate::lists::{Capacities, LIST_COUNT, LIST_PHASES, Phases};
@@ -28,8 +28,6 @@ pub(crate) struct TableBuffers {
     pub patches: Buffer,
     pub seams: Buffer,
     pub limit_seats: Buffer,
-    /// Texture coordinates, those of patches, and those of irregular faces.
-    pub tex_coords: [Buffer; 3],
     pub irregular: Buffer,
     pub quads: Buffer,
     pub ptex_faces: Buffer,
@@ -54,7 +52,6 @@ impl TableBuffers {
             limit_weights: table(device, "limit weights", &limits.weights)?,
             patches: table(device, "patches", &tables.patches.iter().map(patch).collect::<Vec<_>>())?,
             limit_seats: table(device, "limit seats", &limit_seats(tables))?,
-            tex_coords: tex_coords(device, tables)?,
             seams: table(device, "seams", &tables.seams.iter().map(seams).collect::<Vec<_>>())?,
             irregular: table(device, "irregular faces", &tables.irregular.iter().map(irregular).collect::<Vec<_>>())?,
             quads: table(device, "filling quads", &tables.filling.iter().map(quad).collect::<Vec<_>>())?,
@@ -85,7 +82,7 @@ impl TableBuffers {
             &self.density_scales,
             &self.mark_groups,
         ];
-        all.extend(self.neighbours.iter().chain(&self.rings).chain(&self.stars).chain(&self.tex_coords));
+        all.extend(self.neighbours.iter().chain(&self.rings).chain(&self.stars));
         all
     }
 }
@@ -238,7 +235,7 @@ impl ListBuffers {
 /// Keeps all of a surface's buffers alive as long as a recording.
 pub(crate) fn keep(encoder: &mut Encoder, surface: &crate::surface::Surface) {
     let all = surface.buffers.all().into_iter().chain(surface.frame.all()).chain(surface.lists.all());
-    all.chain(surface.maps.all()).for_each(|buffer| encoder.keep(buffer));
+    all.chain(surface.maps.all()).chain(surface.tex_coords.all()).for_each(|buffer| encoder.keep(buffer));
 }
 
 fn read_back<T>(device: &Device, name: &str, count: usize) -> Result<Buffer, Error> {

@@ -4,7 +4,8 @@ use planish_gpu::{Buffer, Device};
 use planish_shaders as shaders;
 use planish_shaders::{DisplacementMap, MapLevel, MapTile};
 use planish_subdiv::ControlMesh;
-use planish_subdiv::tables::{DensitySlots, FaceVaryingTable, LimitSeat, MeshRanges, Tables};
+use planish_subdiv::tables::{DensitySlots, LimitSeat, MeshRanges, Tables, TexTree};
+use planish_subdiv::topology::NONE;
 
 use crate::error::Error;
 use crate::upload::{address, table};
@@ -151,19 +152,65 @@ impl Maps {
     }
 }
 
-/// Texture coordinates as the shaders read them: values, those of patches, those of irregular faces.
-pub(crate) fn tex_coords(device: &Device, tables: &Tables) -> Result<[Buffer; 3], Error> {
-    let channel = tables.face_varying.first();
-    let values = channel.map_or(&[][..], |channel| &channel.values);
-    let patches: Vec<u32> = channel.map_or_else(Vec::new, |channel| channel.patches.concat());
-    // Tables have one of the two.
-    let faces = |channel: &FaceVaryingTable| [channel.faces.concat(), channel.filling.concat()].concat();
-    let faces: Vec<u32> = channel.map_or_else(Vec::new, faces);
-    Ok([
-        table(device, "texture coordinates", values)?,
-        table(device, "texture coordinates of patches", &patches)?,
-        table(device, "texture coordinates of faces", &faces)?,
-    ])
+/// Texture coordinates as the shaders read them: of displaced surfaces 16 of each patch and 8 of each irregular face; of others trees
+/// with their patches and quads.
+pub(crate) struct TexCoordBuffers {
+    pub values: Buffer,
+    pub patches: Buffer,
+    pub faces: Buffer,
+    pub nodes: Buffer,
+    pub roots: Buffer,
+}
+
+impl TexCoordBuffers {
+    pub fn of_tables(device: &Device, tables: &Tables) -> Result<Self, Error> {
+        let channel = tables.face_varying.first();
+        let values = channel.map_or(&[][..], |channel| &channel.values);
+        let patches: Vec<u32> = channel.map_or_else(Vec::new, |channel| channel.patches.concat());
+        let faces: Vec<u32> = channel.map_or_else(Vec::new, |channel| channel.faces.concat());
+        // A mesh without a channel may be displaced too: the first entries say so.
+        let or_none = |entries: Vec<u32>, count: usize| if entries.is_empty() { vec![NONE; count] } else { entries };
+        Self::new(
+            device,
+            values,
+            &or_none(patches, 16 * tables.patches.len()),
+            &or_none(faces, 8 * tables.irregular.len()),
+            &[],
+            &[],
+        )
+    }
+
+    pub fn of_tree(device: &Device, tree: &TexTree) -> Result<Self, Error> {
+        Self::new(
+            device,
+            &tree.values,
+            &tree.patches.concat(),
+            &tree.quads.concat(),
+            &tree.nodes.concat(),
+            &tree.roots,
+        )
+    }
+
+    fn new(
+        device: &Device,
+        values: &[[f32; 2]],
+        patches: &[u32],
+        faces: &[u32],
+        nodes: &[u32],
+        roots: &[u32],
+    ) -> Result<Self, Error> {
+        Ok(Self {
+            values: table(device, "texture coordinates", values)?,
+            patches: table(device, "texture coordinates of patches", patches)?,
+            faces: table(device, "texture coordinates of faces", faces)?,
+            nodes: table(device, "nodes of texture coordinates", nodes)?,
+            roots: table(device, "roots of texture coordinates", roots)?,
+        })
+    }
+
+    pub fn all(&self) -> [&Buffer; 5] {
+        [&self.values, &self.patches, &self.faces, &self.nodes, &self.roots]
+    }
 }
 
 /// What the displacement at limit points is found by.

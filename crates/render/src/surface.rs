@@ -9,12 +9,12 @@ use planish_shaders::{DeviceAddress, DrawHead, FrameCounts, FrameData, FrameInpu
 use planish_subdiv::ControlMesh;
 use planish_subdiv::mesh::HierarchicalEdit;
 use planish_subdiv::refine::{CreasePatches, RefineOptions, Refinement};
-use planish_subdiv::tables::{MeshRanges, Tables};
+use planish_subdiv::tables::{MeshRanges, Tables, TexTree};
 
 use crate::buffers::{FrameBuffers, ListBuffers, TableBuffers};
 use crate::camera::FrameCamera;
 use crate::density::frame_input;
-use crate::displacement::{DisplacementDesc, Maps};
+use crate::displacement::{DisplacementDesc, Maps, TexCoordBuffers};
 use crate::error::Error;
 use crate::lists::{Capacities, Phases, Status};
 use crate::marks::Marks;
@@ -82,6 +82,7 @@ pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preproc
         uniform: desc.method == SurfaceMethod::Uniform,
         crease_patches: desc.crease_patches,
         displaced: desc.displaced,
+        ignores_channels: !desc.displaced,
     };
     let mut times = PreprocessTimes::default();
     let mut parts = Vec::with_capacity(meshes.len());
@@ -113,6 +114,7 @@ pub struct Surface {
     pub(crate) lists: ListBuffers,
     capacities: Capacities,
     pub(crate) maps: Maps,
+    pub(crate) tex_coords: TexCoordBuffers,
     marks: Marks,
     density_scales: Vec<f32>,
     sub_pixel_bits: u32,
@@ -152,6 +154,7 @@ impl Surface {
         let buffers = TableBuffers::new(device, &tables, &marks, &density_scales)?;
         let frame = FrameBuffers::new(device, &tables, &gpu_objects, &sizes, &marks)?;
         let lists = ListBuffers::new(device, &capacities, &phases, desc.method)?;
+        let tex_coords = TexCoordBuffers::of_tables(device, &tables)?;
         times.upload = milliseconds(start);
         let sub_pixel_bits = device.limits().sub_pixel_bits;
         let mut surface = Self {
@@ -166,6 +169,7 @@ impl Surface {
             lists,
             capacities,
             maps: Maps::default(),
+            tex_coords,
             marks,
             density_scales,
             sub_pixel_bits,
@@ -220,6 +224,19 @@ impl Surface {
             crate::objects::displace(object, place, map.bound);
         }
         self.frame.objects.write(0, &self.objects)?;
+        self.write_scene()
+    }
+
+    /// Gives the meshes, which have these cages, their texture coordinates where nothing is displaced. Frames must be recorded anew then.
+    pub fn set_tex_coords(&mut self, device: &Device, meshes: &[&ControlMesh]) -> Result<(), Error> {
+        if self.desc.displaced {
+            // They are part of the tables.
+            return Ok(());
+        }
+        let trees = meshes.iter().zip(&self.meshes);
+        let trees: Result<Vec<_>, Error> =
+            trees.map(|(mesh, ranges)| Ok((ranges.ptex_faces.len() as u32, TexTree::new(mesh)?))).collect();
+        self.tex_coords = TexCoordBuffers::of_tree(device, &TexTree::merged(&trees?))?;
         self.write_scene()
     }
 
@@ -279,9 +296,11 @@ impl Surface {
             star_marks_of: address(&tables.stars[1]),
             maps: self.maps.tables.as_ref().map_or_else(DeviceAddress::null, |[maps, _]| address(maps)),
             texel_counts: self.maps.tables.as_ref().map_or_else(DeviceAddress::null, |[_, counts]| address(counts)),
-            tex_coords: address(&tables.tex_coords[0]),
-            patch_tex_coords: address(&tables.tex_coords[1]),
-            face_tex_coords: address(&tables.tex_coords[2]),
+            tex_coords: address(&self.tex_coords.values),
+            patch_tex_coords: address(&self.tex_coords.patches),
+            face_tex_coords: address(&self.tex_coords.faces),
+            tex_nodes: address(&self.tex_coords.nodes),
+            tex_roots: address(&self.tex_coords.roots),
             limit_seats: address(&tables.limit_seats),
             limit_tangents: address(&frame.limit_tangents),
             densities: address(&frame.densities),

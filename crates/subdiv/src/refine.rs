@@ -44,6 +44,8 @@ pub struct RefineOptions {
     /// The surface will be displaced: also where normals or texture coordinates differ on both sides of an edge, one of
     /// them is known to decide for both.
     pub displaced: bool,
+    /// Face-varying channels are left out: the surface is not refined for their sake.
+    pub ignores_channels: bool,
 }
 
 /// How a level came from the one before: its points in order are the children of `vertices`, `edges` and `faces`.
@@ -105,7 +107,8 @@ impl Refinement {
         let last_level = options.max_level.max(u32::from(has_non_quads)).max(edits::deepest_level(mesh));
         let mut path_edits = PathEdits::new(mesh);
         let mut moved_points = vec![path_edits.apply(&mut levels[0])];
-        let mut face_varying = channels(mesh, &mut levels[0]);
+        let mut face_varying =
+            if options.ignores_channels { Vec::new() } else { channels(mesh, &mut levels[0]) };
         let mut splits = Vec::new();
         let (mut irregular_faces, mut split_faces, mut forced_faces) = (Vec::new(), Vec::new(), Vec::new());
         for k in 0..=last_level {

@@ -22,7 +22,7 @@ use crate::refine::Refinement;
 use crate::stencil::{SharedWeights, StencilTable, has_large_faces};
 
 pub use crate::selection::PatchCounts;
-pub use face_varying::{FaceVaryingEvaluator, FaceVaryingPatch, FaceVaryingTable};
+pub use face_varying::{FaceVaryingEvaluator, FaceVaryingPatch, FaceVaryingTable, TexTree};
 pub use irregular::IrregularFace;
 pub use lists::IndexLists;
 pub use merge::MeshRanges;

@@ -5,6 +5,7 @@
 //! already made, and exact limit values at the corners and edge middles of irregular faces.
 
 mod evaluate;
+mod tree;
 
 use std::collections::HashMap;
 
@@ -17,6 +18,7 @@ use crate::tables::{MeshRanges, Tables};
 use crate::topology::NONE;
 
 pub use evaluate::FaceVaryingEvaluator;
+pub use tree::TexTree;
 
 /// The 16 control values of a patch, row by row (v), u running fastest, as its control points: indices into
 /// [`FaceVaryingTable::values`]. Reflected rows are stored like all others, so no mask is needed, and the patch is
