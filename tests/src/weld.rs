@@ -175,7 +175,7 @@ fn loops(edges: &[[u32; 2]]) -> Option<usize> {
 fn weld(vertices: &[Vertex], by: Weld) -> Vec<u32> {
     let mut points: HashMap<[[u32; 3]; 2], u32> = HashMap::new();
     let bits = |vector: [f32; 3]| vector.map(|value| if value == 0.0 { 0 } else { value.to_bits() });
-    let mut point_of = |vertex: &Vertex| {
+    let point_of = |vertex: &Vertex| {
         let normal = if by == Weld::Position { [0; 3] } else { bits(vertex.normal) };
         let next = points.len() as u32;
         *points.entry([bits(vertex.position), normal]).or_insert(next)

@@ -181,14 +181,7 @@ impl TexCoordBuffers {
     }
 
     pub fn of_tree(device: &Device, tree: &TexTree) -> Result<Self, Error> {
-        Self::new(
-            device,
-            &tree.values,
-            &tree.patches.concat(),
-            &tree.quads.concat(),
-            &tree.nodes.concat(),
-            &tree.roots,
-        )
+        Self::new(device, &tree.values, &tree.patches.concat(), &tree.quads.concat(), &tree.nodes.concat(), &tree.roots)
     }
 
     fn new(

@@ -107,8 +107,7 @@ impl Refinement {
         let last_level = options.max_level.max(u32::from(has_non_quads)).max(edits::deepest_level(mesh));
         let mut path_edits = PathEdits::new(mesh);
         let mut moved_points = vec![path_edits.apply(&mut levels[0])];
-        let mut face_varying =
-            if options.ignores_channels { Vec::new() } else { channels(mesh, &mut levels[0]) };
+        let mut face_varying = if options.ignores_channels { Vec::new() } else { channels(mesh, &mut levels[0]) };
         let mut splits = Vec::new();
         let (mut irregular_faces, mut split_faces, mut forced_faces) = (Vec::new(), Vec::new(), Vec::new());
         for k in 0..=last_level {

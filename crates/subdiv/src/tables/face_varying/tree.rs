@@ -52,11 +52,8 @@ impl TexTree {
     }
 
     fn of(tables: &Tables, channel: &FaceVaryingTable) -> Self {
-        let mut tree = Self {
-            roots: vec![NONE; tables.ptex_faces.len()],
-            values: channel.values.clone(),
-            ..Self::default()
-        };
+        let mut tree =
+            Self { roots: vec![NONE; tables.ptex_faces.len()], values: channel.values.clone(), ..Self::default() };
         for (index, patch) in tables.patches.iter().enumerate() {
             let location = patch.info.location;
             // The spline of a bilinear function is exact, but sums 16 products where 4 do.
@@ -152,8 +149,17 @@ mod tests {
             face_vertices: vec![0, 1, 4, 3, 1, 2, 5, 4],
             face_varying: vec![FaceVaryingChannel {
                 name: "st".to_owned(),
-                values: [[0.0, 0.0], [0.5, 0.0], [0.5, 1.0], [0.0, 1.0], [0.6, 0.0], [1.0, 0.0], [1.0, 1.0], [0.6, 1.0]]
-                    .to_vec(),
+                values: [
+                    [0.0, 0.0],
+                    [0.5, 0.0],
+                    [0.5, 1.0],
+                    [0.0, 1.0],
+                    [0.6, 0.0],
+                    [1.0, 0.0],
+                    [1.0, 1.0],
+                    [0.6, 1.0],
+                ]
+                .to_vec(),
                 indices: (0..8).collect(),
             }],
             ..ControlMesh::default()
@@ -198,11 +204,9 @@ mod tests {
     #[test]
     fn a_tree_has_the_values_of_the_tables() {
         let mut mesh = pair();
-        for mode in [
-            FaceVaryingInterpolation::CornersPlus1,
-            FaceVaryingInterpolation::None,
-            FaceVaryingInterpolation::All,
-        ] {
+        for mode in
+            [FaceVaryingInterpolation::CornersPlus1, FaceVaryingInterpolation::None, FaceVaryingInterpolation::All]
+        {
             mesh.options.face_varying = mode;
             let tree = TexTree::new(&mesh).expect("a mesh").expect("a channel");
             let options = RefineOptions { max_level: MAX_LEVEL, ..RefineOptions::default() };
