@@ -4,7 +4,9 @@ use crate::patch::{PatchInfo, RegularPatch, control_points};
 use crate::refine::{CreasePatches, Refinement, child_half_edge};
 use crate::tables::Tables;
 use crate::tables::limits::{LimitPoints, children};
-use crate::tables::seams::{PatchSeams, SharedCorners, border_of_cut, borders, displacing_channel, limit_seats};
+use crate::tables::seams::{
+    FacesAbove, PatchSeams, SharedCorners, border_of_cut, borders, displacing_channel, limit_seats,
+};
 use crate::tables::stars::StarPoints;
 use crate::topology::{Level, Location, NONE};
 
@@ -159,7 +161,13 @@ impl<'a> LevelFaces<'a> {
         let (patches_above, places_above) = above.map(|(above, _)| above.patch_places()).unwrap_or_default();
         let (_, places) = self.patch_places();
         let channel = displacing_channel(refinement, self.k);
-        let mut shared = SharedCorners::new(refinement, self.k, &self.is_irregular, &patches_above);
+        let leaves_above = above.map(|(above, _)| above.possible_leaves()).unwrap_or_default();
+        let faces_above = above.map(|(above, _)| FacesAbove {
+            level: above.level,
+            is_patch: &patches_above,
+            may_be_leaf: &leaves_above,
+        });
+        let mut shared = SharedCorners::new(refinement, self.k, &self.is_irregular, faces_above);
         let first_point = tables.levels[self.k as usize].points.start;
         for face in (0..level.drawn_count).filter(|&face| level.is_drawn(face) && !self.is_irregular[face as usize]) {
             let (points, boundary) = control_points(level, face);
@@ -204,6 +212,14 @@ impl<'a> LevelFaces<'a> {
         let place = |&place: &u32| if place & IrregularFace::IRREGULAR == 0 { place } else { NONE };
         let places: Vec<u32> = self.places.iter().map(place).collect();
         (places.iter().map(|&place| place != NONE).collect(), places)
+    }
+
+    /// Which faces are irregular and drawn in some frames.
+    fn possible_leaves(&self) -> Vec<bool> {
+        let faces = (0..).zip(self.is_irregular.iter().zip(&self.is_forced));
+        faces
+            .map(|(face, (&is_irregular, &is_forced))| is_irregular && !is_forced && self.level.is_drawn(face))
+            .collect()
     }
 
     /// The edges of the child at a corner that are halves of edges of this level's ends of refinement, one bit each.

@@ -2,7 +2,8 @@
 //!
 //! Regular patches of one level evaluate a shared edge from the same control points in an order that no turn of the
 //! patch changes: they agree by themselves. Two things do not:
-//! - a corner where irregular faces, or vertices of coarser faces, lie around: all take its limit point;
+//! - a corner where irregular faces, or vertices of coarser faces, lie around: all take its limit point. So they do where an
+//!   irregular face of the level before does, on the other side of an edge: it may be drawn as it is while this side is refined;
 //! - an edge that is half of an edge of a coarser patch: the finer patch evaluates the coarser one there.
 //!
 //! Where the surface is displaced, positions depend on normals and texture coordinates too, and those differ on both sides of
@@ -56,12 +57,21 @@ impl PatchSeams {
     pub(super) const NOTHING: Self = Self { limits: [NONE; 4], borders: [None; 4] };
 }
 
+/// The level before.
+#[derive(Clone, Copy)]
+pub(super) struct FacesAbove<'a> {
+    pub level: &'a Level,
+    /// Which of its faces are patches.
+    pub is_patch: &'a [bool],
+    /// Which of them are irregular and drawn between limit points in some frames.
+    pub may_be_leaf: &'a [bool],
+}
+
 /// Which vertices of a level are limit points for all patches around them: memory, filled as they are asked for.
 pub(super) struct SharedCorners<'a> {
     level: &'a Level,
     is_irregular: &'a [bool],
-    /// The level before, and which of its faces are patches.
-    above: Option<(&'a Level, &'a [bool])>,
+    above: Option<FacesAbove<'a>>,
     /// Parent corner of each face.
     child_corners: &'a [u32],
     /// Vertices below this are those of the level before.
@@ -72,14 +82,14 @@ pub(super) struct SharedCorners<'a> {
 }
 
 impl<'a> SharedCorners<'a> {
-    /// Of level `k`; `is_irregular` for its faces, `is_patch_above` for those of the level before.
-    pub fn new(refinement: &'a Refinement, k: u32, is_irregular: &'a [bool], is_patch_above: &'a [bool]) -> Self {
+    /// Of level `k`; `is_irregular` for its faces.
+    pub fn new(refinement: &'a Refinement, k: u32, is_irregular: &'a [bool], above: Option<FacesAbove<'a>>) -> Self {
         let level = &refinement.levels[k as usize];
         let split = k.checked_sub(1).map(|above| &refinement.splits[above as usize]);
         Self {
             level,
             is_irregular,
-            above: k.checked_sub(1).map(|above| (&refinement.levels[above as usize], is_patch_above)),
+            above,
             child_corners: split.map_or(&[], |split| &split.child_corners),
             vertex_count: split.map_or(0, |split| split.vertices.len() as u32),
             displaced: refinement.options.displaced.then(|| displacing_channel(refinement, k)),
@@ -94,7 +104,8 @@ impl<'a> SharedCorners<'a> {
             return known;
         }
         let mut faces = self.level.all_spokes(vertex).map(|spoke| self.level.face(spoke));
-        let is_limit = faces.any(|face| self.asks_for_limit(vertex, face)) || self.is_cut(vertex);
+        let is_limit =
+            faces.any(|face| self.asks_for_limit(vertex, face)) || self.is_on_leaf(vertex) || self.is_cut(vertex);
         self.known[vertex as usize] = Some(is_limit);
         is_limit
     }
@@ -107,13 +118,28 @@ impl<'a> SharedCorners<'a> {
         edges.any(|edge| is_cut(self.level, channel, edge)) && !self.is_middle_of_patch(vertex)
     }
 
+    /// Whether a vertex is a corner of a face of the level before, or in the middle of its edge, which may be drawn between
+    /// limit points while the faces on the other side of the edge are refined.
+    fn is_on_leaf(&self, vertex: u32) -> bool {
+        let Some(above) = self.above else { return false };
+        let faces = self.level.all_spokes(vertex).map(|spoke| self.level.face(spoke));
+        let mut parents = faces.map(|face| above.level.face(self.child_corners[face as usize]));
+        let Some(first) = parents.next() else { return false };
+        let (mut is_shared, mut may_be_leaf) = (false, above.may_be_leaf[first as usize]);
+        for parent in parents {
+            is_shared |= parent != first;
+            may_be_leaf |= above.may_be_leaf[parent as usize];
+        }
+        is_shared && may_be_leaf && !self.is_middle_of_patch(vertex)
+    }
+
     fn is_middle_of_patch(&self, vertex: u32) -> bool {
-        let Some((above, is_patch)) = self.above else { return false };
+        let Some(above) = self.above else { return false };
         let mut faces = self.level.all_spokes(vertex).map(|spoke| self.level.face(spoke));
         vertex >= self.vertex_count
             && faces.any(|face| {
-                let parent = above.face(self.child_corners[face as usize]);
-                face >= self.level.drawn_count && is_patch[parent as usize]
+                let parent = above.level.face(self.child_corners[face as usize]);
+                face >= self.level.drawn_count && above.is_patch[parent as usize]
             })
     }
 
@@ -123,9 +149,9 @@ impl<'a> SharedCorners<'a> {
         if face < self.level.drawn_count {
             return self.level.is_drawn(face) && self.is_irregular[face as usize];
         }
-        let Some((above, is_patch)) = self.above else { return true };
-        let parent = above.face(self.child_corners[face as usize]);
-        above.is_drawn(parent) && (vertex < self.vertex_count || !is_patch[parent as usize])
+        let Some(above) = self.above else { return true };
+        let parent = above.level.face(self.child_corners[face as usize]);
+        above.level.is_drawn(parent) && (vertex < self.vertex_count || !above.is_patch[parent as usize])
     }
 }
 
@@ -161,7 +187,12 @@ fn first_patch_across(level: &Level, places: &[u32], edge: u32) -> Option<u32> {
 
 /// The patch of the same level that decides along an edge of a patch of a displaced surface, if it is another one: the first
 /// of those at a crease or a seam.
-pub(super) fn border_of_cut(level: &Level, channel: Option<&ChannelLevel>, places: &[u32], edge: u32) -> Option<Border> {
+pub(super) fn border_of_cut(
+    level: &Level,
+    channel: Option<&ChannelLevel>,
+    places: &[u32],
+    edge: u32,
+) -> Option<Border> {
     if !is_cut(level, channel, edge) {
         return None;
     }
