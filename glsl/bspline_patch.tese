@@ -298,9 +298,15 @@ struct TexPoints {
 TexPoints tex_points(Evaluated point, Parameter u, Parameter v, bool wants_deciding)
 {
     Object object = push.frame.v.scene.v.objects.v[patch_places.y];
-    TexPoints result;
+    SceneTables scene = push.frame.v.scene;
+    TexPoints result = TexPoints(TexPoint(vec2(0.0), vec2(0.0), vec2(0.0)), vec2(0.0), vec2(0.0));
+    // Maps over Ptex faces need none, and meshes that have such may have none to read.
+    bool is_looked_up = false;
+    for (bool is_open = DISPLACED && object.map != NONE; is_open; is_open = false) {
+        is_looked_up = scene.v.maps.v[object.map].layout_kind != LAYOUT_FACES;
+    }
     [[dont_unroll]] for (uint i = 0u; i < 3u; ++i) {
-        bool is_wanted = i == 1u ? wants_deciding : i == 0u || TEX_COORDS;
+        bool is_wanted = i == 0u ? is_looked_up : (i == 1u ? is_looked_up && wants_deciding : TEX_COORDS);
         uint place = i == 0u ? point.place : (i == 1u ? point.decider.place : own_place());
         Parameter at_u = point.u;
         Parameter at_v = point.v;

@@ -1,15 +1,15 @@
 //! What culling leaves out: nothing that could be seen, and without a trace in any image.
 
 use std::collections::{HashMap, HashSet};
-use std::path::Path;
 
 use planish_render::density::isolation_level;
-use planish_render::{CapturedVertex, Culling, Density, FrameCamera, FrameOptions, PatchKind, Selection, Spacing};
-use planish_scene::LoadOptions;
+use planish_render::{
+    CapturedVertex, Culling, Density, FrameCamera, FrameOptions, ObjectDesc, PatchKind, Selection, Spacing,
+};
 
 use crate::lab::{Easel, Lab, SPACINGS};
 use crate::seen::Rasterizer;
-use crate::world::World;
+use crate::world::{self, World};
 
 /// Closed meshes that face outward.
 const CLOSED: [&str; 6] =
@@ -71,13 +71,7 @@ fn triangles(
 ) -> HashMap<Key, Vec<CapturedVertex>> {
     let all = FrameOptions { culling: Culling::Off, ..options(world, camera, density) };
     lab.run(&mut world.surface, spacing, camera, &all);
-    let mut vertices = Vec::new();
-    let passes = lab.dump_passes(world.surface.desc(), spacing);
-    let captured = passes.capture(&lab.device, &world.surface, |part| {
-        vertices.extend_from_slice(part);
-        Ok::<_, planish_render::Error>(())
-    });
-    captured.expect("capture");
+    let vertices = lab.dump(&world.surface, &lab.dump_passes(world.surface.desc(), spacing));
     let mut rest = vertices.as_slice();
     let mut of_entries = HashMap::new();
     for (kind, entries) in lab.unsorted_entries(&world.surface).iter().enumerate() {
@@ -183,15 +177,9 @@ fn no_triangle_of_a_patch_that_is_left_out_of_a_dynamic_cut_could_be_seen() {
 
 /// Models beside the repository, where they are.
 fn models(lab: &Lab) -> Vec<World> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/models");
-    let paths = ["bigguy.obj", "monsterfrog.obj"].map(|name| folder.join(name));
-    let load = |path: &std::path::PathBuf| {
-        let scene = planish_scene::load(path, &LoadOptions::default()).expect("a scene");
-        let meshes = scene.meshes.into_iter().map(|mesh| mesh.control_mesh).collect();
-        let object = planish_render::ObjectDesc { hides_backs: true, ..planish_render::ObjectDesc::identity(0) };
-        World::new(&lab.device, &path.display().to_string(), meshes, vec![object], 3)
-    };
-    paths.iter().filter(|path| path.is_file()).map(load).collect()
+    let object = ObjectDesc { hides_backs: true, ..ObjectDesc::identity(0) };
+    let world = |(name, mesh): (String, _)| World::new(&lab.device, &name, vec![mesh], vec![object], 3);
+    world::models().into_iter().map(world).collect()
 }
 
 #[test]

@@ -10,6 +10,7 @@ use planish_subdiv::patch::PatchInfo;
 use planish_subdiv::topology::Location;
 
 use crate::lab::{Easel, Lab, SPACINGS};
+use crate::random::Random;
 use crate::world::{World, scene};
 
 const SIZE: [u32; 2] = [64, 48];
@@ -26,29 +27,6 @@ const SCENES: [(&str, u32); 7] = [
 
 fn is_small(name: &str) -> bool {
     SCENES[..2].iter().any(|(small, _)| name.starts_with(small))
-}
-
-/// A linear congruential generator.
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u32 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as u32
-    }
-
-    fn part(&mut self) -> f32 {
-        self.bits() as f32 / (1_u32 << 31) as f32
-    }
-
-    /// Any number, some of them none.
-    fn odd(&mut self) -> f32 {
-        const ODD: [f32; 9] = [0.0, -1.0, 1e-30, -1e30, f32::MAX, f32::MIN_POSITIVE, f32::INFINITY, f32::NAN, 1e6];
-        match self.bits() % 4 {
-            0 => ODD[self.bits() as usize % ODD.len()],
-            _ => 4.0 * self.part() - 2.0,
-        }
-    }
 }
 
 /// Cameras that see well, and such that see nothing or are none.

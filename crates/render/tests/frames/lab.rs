@@ -2,8 +2,8 @@
 
 use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, DeviceOptions, Encoder, Image, PipelineStatistics};
 use planish_render::{
-    DrawOptions, DrawPasses, DumpPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, PatchKind, Spacing,
-    Status, Surface, SurfaceDesc, Targets, View,
+    CapturedVertex, DrawOptions, DrawPasses, DumpPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, PatchKind,
+    Spacing, Status, Surface, SurfaceDesc, Targets, View,
 };
 use planish_shaders::DrawEntry;
 
@@ -13,15 +13,32 @@ pub const SPACINGS: [Spacing; 3] = [Spacing::Equal, Spacing::FractionalOdd, Spac
 /// A device, and the stages of each spacing.
 pub struct Lab {
     pub device: Device,
+    needs: [FrameNeeds; 3],
     stages: [FrameStages; 3],
 }
 
 impl Lab {
+    /// For limit surfaces.
     pub fn new() -> Self {
+        Self::with_needs(FrameNeeds::all)
+    }
+
+    /// For displaced surfaces.
+    pub fn displaced() -> Self {
+        Self::with_needs(|spacing| FrameNeeds { displaced: true, ..FrameNeeds::all(spacing) })
+    }
+
+    pub fn with_needs(of: impl Fn(Spacing) -> FrameNeeds) -> Self {
         let options = DeviceOptions { validation: true, selector: None, memory_budget: None };
         let device = Device::open(&options).expect("a Vulkan device with the validation layer");
-        let stages = SPACINGS.map(|spacing| FrameStages::new(&device, &FrameNeeds::all(spacing)).expect("pipelines"));
-        Self { device, stages }
+        let needs = SPACINGS.map(of);
+        let stages = needs.map(|needs| FrameStages::new(&device, &needs).expect("pipelines"));
+        Self { device, needs, stages }
+    }
+
+    /// What its frames may need.
+    pub fn needs(&self, spacing: Spacing) -> &FrameNeeds {
+        &self.needs[spacing.constant() as usize]
     }
 
     fn stages(&self, spacing: Spacing) -> &FrameStages {
@@ -106,7 +123,18 @@ impl Lab {
     }
 
     pub fn dump_passes(&self, desc: &SurfaceDesc, spacing: Spacing) -> DumpPasses {
-        DumpPasses::new(&self.device, desc, &FrameNeeds::all(spacing)).expect("pipelines")
+        DumpPasses::new(&self.device, desc, self.needs(spacing)).expect("pipelines")
+    }
+
+    /// The triangles of what the last frame listed, three vertices each.
+    pub fn dump(&self, surface: &Surface, passes: &DumpPasses) -> Vec<CapturedVertex> {
+        let mut vertices = Vec::new();
+        let captured = passes.capture(&self.device, surface, |part| {
+            vertices.extend_from_slice(part);
+            Ok::<_, planish_render::Error>(())
+        });
+        captured.expect("capture");
+        vertices
     }
 
     pub fn assert_silent(&self) {
@@ -129,10 +157,10 @@ pub struct Easel {
 impl Easel {
     pub fn new(lab: &Lab, spacing: Spacing, cull_back: bool, size: [u32; 2]) -> Self {
         let options = DrawOptions { view: View::Shaded, layers: true, cull_back };
-        let (desc, needs) = (SurfaceDesc::default(), FrameNeeds::all(spacing));
+        let desc = SurfaceDesc::default();
         Self {
             spacing,
-            passes: DrawPasses::new(&lab.device, &desc, &needs, &options).expect("pipelines"),
+            passes: DrawPasses::new(&lab.device, &desc, lab.needs(spacing), &options).expect("pipelines"),
             targets: Targets::new(&lab.device, size, true).expect("images"),
         }
     }

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use glam::{Affine3A, Mat4, Quat, Vec3};
 use planish_gpu::Device;
-use planish_render::{FrameCamera, ObjectDesc, Surface, SurfaceDesc, preprocess};
+use planish_render::{DisplacementDesc, FrameCamera, MapLayout, ObjectDesc, Surface, SurfaceDesc, preprocess};
+use planish_scene::displacement::{DisplacementMap, TileLayout};
 use planish_scene::{Camera, LoadOptions};
 use planish_subdiv::ControlMesh;
 
@@ -30,7 +31,17 @@ impl World {
         level: u32,
         capacity: Option<u32>,
     ) -> Self {
-        let desc = SurfaceDesc { level, ..SurfaceDesc::default() };
+        Self::with_desc(device, name, meshes, objects, SurfaceDesc { level, ..SurfaceDesc::default() }, capacity)
+    }
+
+    pub fn with_desc(
+        device: &Device,
+        name: &str,
+        meshes: Vec<ControlMesh>,
+        objects: Vec<ObjectDesc>,
+        desc: SurfaceDesc,
+        capacity: Option<u32>,
+    ) -> Self {
         let all: Vec<&ControlMesh> = meshes.iter().collect();
         let made = preprocess(&all, &desc).expect("tables");
         let surface = Surface::with_capacity(device, &all, &objects, desc, made, capacity).expect("upload");
@@ -48,6 +59,28 @@ impl World {
     pub fn of_objects(device: &Device, level: u32, capacity: Option<u32>) -> Self {
         let (meshes, objects) = objects();
         Self::with_capacity(device, "objects", meshes, objects, level, capacity)
+    }
+
+    /// Gives a mesh a displacement map; the surface was made to be displaced.
+    pub fn displace(&mut self, device: &Device, mesh: usize, map: &DisplacementMap) {
+        let levels: Vec<[u32; 3]> = map.levels.iter().map(|l| [l.first_texel, l.width, l.height]).collect();
+        let tiles: Vec<[u32; 2]> = map.tiles.iter().map(|tile| [tile.first_level, tile.level_count]).collect();
+        let desc = DisplacementDesc {
+            channels: map.channels,
+            layout: match map.layout {
+                TileLayout::Repeat => MapLayout::Repeat,
+                TileLayout::Udim => MapLayout::Udim,
+                TileLayout::Faces => MapLayout::Faces,
+            },
+            texels: &map.texels,
+            levels: &levels,
+            tiles: &tiles,
+            tile_of: &map.tile_of,
+            tile_columns: map.tile_columns,
+            parts: &map.parts,
+            bound: map.bound,
+        };
+        self.surface.displace(device, mesh, &self.meshes[mesh], &desc).expect("a map");
     }
 
     /// Positions of all cages, one after the other.
@@ -84,8 +117,14 @@ impl World {
     }
 
     pub fn camera(&self, eye: Vec3, target: Vec3, size: [u32; 2]) -> FrameCamera {
+        self.camera_of_angle(eye, target, 45.0, size)
+    }
+
+    /// A camera that sees so many degrees from the lower to the upper edge of the image.
+    pub fn camera_of_angle(&self, eye: Vec3, target: Vec3, degrees: f32, size: [u32; 2]) -> FrameCamera {
         let [low, high] = self.bounds();
-        let camera = Camera::upright("test", eye, target, 45.0, f64::from((high - low).length())).expect("a camera");
+        let diagonal = f64::from((high - low).length());
+        let camera = Camera::upright("test", eye, target, degrees, diagonal).expect("a camera");
         FrameCamera {
             world_to_camera: camera.view_matrix(),
             projection: Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0))
@@ -131,6 +170,22 @@ pub fn scene(name: &str, hides_backs: bool) -> (Vec<ControlMesh>, Vec<ObjectDesc
     };
     let objects = scene.instances.iter().map(object).collect();
     (scene.meshes.into_iter().map(|mesh| mesh.control_mesh).collect(), objects)
+}
+
+/// The models beside the repository, by their names; none, with a word about it, where there are none.
+pub fn models() -> Vec<(String, ControlMesh)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/models");
+    let load = |name: &str| {
+        let path = folder.join(name);
+        if !path.is_file() {
+            println!("skipped: there is no model {}", path.display());
+            return None;
+        }
+        let mut scene = planish_scene::load(&path, &LoadOptions::default()).expect("a scene");
+        assert_eq!(scene.meshes.len(), 1, "{name}");
+        Some((name.to_owned(), scene.meshes.remove(0).control_mesh))
+    };
+    ["bigguy.obj", "monsterfrog.obj"].into_iter().filter_map(load).collect()
 }
 
 fn objects() -> (Vec<ControlMesh>, Vec<ObjectDesc>) {
