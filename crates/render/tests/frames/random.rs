@@ -6,6 +6,11 @@ use glam::Vec3;
 pub struct Random(pub u64);
 
 impl Random {
+    /// The same for the same name, whatever comes before.
+    pub fn named(name: &str) -> Self {
+        Self(name.bytes().fold(0, |seed: u64, byte| seed.wrapping_mul(257).wrapping_add(byte.into())))
+    }
+
     pub fn bits(&mut self) -> u32 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) as u32

@@ -1,7 +1,7 @@
 //! Closed surfaces are closed: whatever is seen of them from wherever, all triangles meet edge to edge, to the bit.
 //!
 //! Each mesh is captured from as many random eyes as `PLANISH_SEAM_CAMERAS` says (2), with every selection and spacing; of the
-//! meshes those that have `PLANISH_SEAM_SCENES` in their names (all).
+//! meshes those whose names have one of the parts in `PLANISH_SEAM_SCENES`, between commas (all).
 
 use std::cell::OnceCell;
 use std::collections::{HashMap, HashSet};
@@ -44,7 +44,7 @@ const AMPLITUDE: f32 = 0.05;
 const SKIPPED: [(&str, &str); 2] =
     [("double_sided_quad", "its two faces lie on each other"), ("flat_pair", "its faces lie on each other")];
 
-/// Of regular faces, with texture coordinates and without, with a sharp edge.
+/// Of regular faces, with texture coordinates and without, with a sharp edge: one for each spacing.
 const CUT: [&str; 3] = ["torus_32", "uv_torus", "crease_infinite"];
 
 /// What must have the same bits for corners to be one point. Of zeros the sign does not count.
@@ -165,7 +165,7 @@ fn closed_meshes() -> Vec<(String, ControlMesh)> {
 
 /// Whether what has this name is to be checked; of the empty name, whether all is.
 fn is_wanted(name: &str) -> bool {
-    env::var("PLANISH_SEAM_SCENES").map_or(true, |part| name.contains(&part))
+    env::var("PLANISH_SEAM_SCENES").map_or(true, |parts| parts.split(',').any(|part| name.contains(part)))
 }
 
 /// How many random eyes look at each mesh, with each selection and spacing.
@@ -337,14 +337,14 @@ impl Bench {
 /// The closed meshes, each by itself; some with a face so dense that it is cut; and instances.
 fn check_all(mut bench: Bench) {
     let meshes = closed_meshes();
-    for (turn, (name, mesh)) in meshes.into_iter().enumerate() {
-        let mut random = Random(turn as u64);
-        if CUT.contains(&name.as_str()) {
+    for (name, mesh) in meshes {
+        let mut random = Random::named(&name);
+        if let Some(turn) = CUT.iter().position(|cut| *cut == name) {
             let mut uneven = mesh.clone();
             uneven.density = vec![0.05; mesh.positions.len()];
             mesh.face_vertices[..4].iter().for_each(|&corner| uneven.density[corner as usize] = 1.0);
             let mut world = bench.world(&name, vec![uneven], vec![ObjectDesc::identity(0)], &mut random);
-            bench.check(&mut world, &SPACINGS, FINE, &mut random);
+            bench.check(&mut world, &SPACINGS[turn..=turn], FINE, &mut random);
         }
         let mut world = bench.world(&name, vec![mesh], vec![ObjectDesc::identity(0)], &mut random);
         bench.check(&mut world, &SPACINGS, MODERATE, &mut random);
@@ -359,7 +359,7 @@ fn check_all(mut bench: Bench) {
     bench.finish();
     if is_wanted("") {
         for kind in PatchKind::ALL {
-            assert!(bench.entries[kind as usize] > 200, "{kind:?}: {:?}", bench.entries);
+            assert!(bench.entries[kind as usize] > 50, "{kind:?}: {:?}", bench.entries);
         }
     }
 }
@@ -393,8 +393,8 @@ fn closed_meshes_with_patches_for_creases_are_closed_to_the_bit() {
     let mut bench = Bench::new(Lab::new(), CreasePatches::Single);
     let creased =
         |(_, mesh): &(String, ControlMesh)| mesh.creases.iter().any(|crease| crease.sharpness < INFINITE_SHARPNESS);
-    for (turn, (name, mesh)) in closed_meshes().into_iter().filter(creased).enumerate() {
-        let mut random = Random(turn as u64);
+    for (name, mesh) in closed_meshes().into_iter().filter(creased) {
+        let mut random = Random::named(&name);
         let mut world = bench.world(&name, vec![mesh], vec![ObjectDesc::identity(0)], &mut random);
         bench.check(&mut world, &[Spacing::FractionalOdd], MODERATE, &mut random);
     }
