@@ -450,6 +450,10 @@ void main()
     PatchInfo info = PatchInfo(patch_words.x, patch_words.y, patch_words.z);
     Evaluated point;
     if (WATERTIGHT) {
+        // Where a segment has no length, or a piece has one point alone of an edge, that point may be a corner: so are all at its place.
+        bvec2 is_along = bvec2(is_on.x || is_on.z, is_on.y || is_on.w);
+        is_on = bvec4(is_on.x || (is_along.y && v.t == 0.0), is_on.y || (is_along.x && u.s == 0.0),
+                      is_on.z || (is_along.y && v.s == 0.0), is_on.w || (is_along.x && u.t == 0.0));
         point = evaluate_watertight(u, v, is_on, info);
     } else {
         point = evaluate(u, v, info);
