@@ -63,6 +63,12 @@ struct Evaluated {
     BorderPoint decider; // where surfaces are displaced: the patch that says where to, if it is another one
 };
 
+precise vec3 over_36(vec3 a)
+{
+    precise vec3 result = a / 36.0;
+    return result;
+}
+
 precise vec3 patch_position(vec3 p[16], vec4 nu, vec4 nv)
 {
     precise vec3 result = weigh_patch(p, nu, nv) / 36.0;
@@ -188,9 +194,9 @@ Evaluated evaluate_watertight(Parameter u, Parameter v, bvec4 is_on, PatchInfo i
     result.u = u;
     result.v = v;
     basis(u, v, crease, sharpness, result.nu, result.du, result.nv, result.dv);
-    result.position = patch_position(p, result.nu, result.nv);
-    result.along_u = weigh_patch(p, result.du, result.nv);
-    result.along_v = weigh_patch(p, result.nu, result.dv);
+    vec3 position;
+    weigh_patch_and_tangents(p, result.nu, result.du, result.nv, result.dv, position, result.along_u, result.along_v);
+    result.position = over_36(position);
     result.normal = without_sign_of_zero(unit_normal(result.along_u, result.along_v));
     for (bool is_open = sharp_edges != 0u; is_open; is_open = false) {
         result.position = sharp_position(sharp_edges, border, result.nu, result.nv);

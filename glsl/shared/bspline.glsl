@@ -45,6 +45,27 @@ precise vec3 weigh_patch(vec3 p[16], vec4 nu, vec4 nv)
     return sum;
 }
 
+// The same with three pairs of weights, each point being looked at once: position times 36, and tangents along u and v times 12.
+void weigh_patch_and_tangents(vec3 p[16], vec4 nu, vec4 du, vec4 nv, vec4 dv, out precise vec3 position, out precise vec3 along_u,
+                              out precise vec3 along_v)
+{
+    precise vec3 even_even_p = (p[0] * (nu.x * nv.x) + p[10] * (nu.z * nv.z)) + (p[2] * (nu.z * nv.x) + p[8] * (nu.x * nv.z));
+    precise vec3 even_even_u = (p[0] * (du.x * nv.x) + p[10] * (du.z * nv.z)) + (p[2] * (du.z * nv.x) + p[8] * (du.x * nv.z));
+    precise vec3 even_even_v = (p[0] * (nu.x * dv.x) + p[10] * (nu.z * dv.z)) + (p[2] * (nu.z * dv.x) + p[8] * (nu.x * dv.z));
+    precise vec3 odd_even_p = (p[3] * (nu.w * nv.x) + p[9] * (nu.y * nv.z)) + (p[1] * (nu.y * nv.x) + p[11] * (nu.w * nv.z));
+    precise vec3 odd_even_u = (p[3] * (du.w * nv.x) + p[9] * (du.y * nv.z)) + (p[1] * (du.y * nv.x) + p[11] * (du.w * nv.z));
+    precise vec3 odd_even_v = (p[3] * (nu.w * dv.x) + p[9] * (nu.y * dv.z)) + (p[1] * (nu.y * dv.x) + p[11] * (nu.w * dv.z));
+    precise vec3 even_odd_p = (p[12] * (nu.x * nv.w) + p[6] * (nu.z * nv.y)) + (p[14] * (nu.z * nv.w) + p[4] * (nu.x * nv.y));
+    precise vec3 even_odd_u = (p[12] * (du.x * nv.w) + p[6] * (du.z * nv.y)) + (p[14] * (du.z * nv.w) + p[4] * (du.x * nv.y));
+    precise vec3 even_odd_v = (p[12] * (nu.x * dv.w) + p[6] * (nu.z * dv.y)) + (p[14] * (nu.z * dv.w) + p[4] * (nu.x * dv.y));
+    precise vec3 odd_odd_p = (p[15] * (nu.w * nv.w) + p[5] * (nu.y * nv.y)) + (p[13] * (nu.y * nv.w) + p[7] * (nu.w * nv.y));
+    precise vec3 odd_odd_u = (p[15] * (du.w * nv.w) + p[5] * (du.y * nv.y)) + (p[13] * (du.y * nv.w) + p[7] * (du.w * nv.y));
+    precise vec3 odd_odd_v = (p[15] * (nu.w * dv.w) + p[5] * (nu.y * dv.y)) + (p[13] * (nu.y * dv.w) + p[7] * (nu.w * dv.y));
+    position = (even_even_p + odd_odd_p) + (odd_even_p + even_odd_p);
+    along_u = (even_even_u + odd_odd_u) + (odd_even_u + even_odd_u);
+    along_v = (even_even_v + odd_odd_v) + (odd_even_v + even_odd_v);
+}
+
 // Cross product whose operations are all kept as written.
 precise vec3 precise_cross(vec3 a, vec3 b)
 {

@@ -5,11 +5,13 @@ use planish_shaders::precise::no_contraction_report;
 use planish_shaders::{self as shaders, ShaderModule};
 
 /// Functions whose arithmetic decides shared positions and normals, by module.
-const EVALUATION: [&str; 25] = [
+const EVALUATION: [&str; 27] = [
     "cubic_basis",
     "crease_basis",
     "weigh",
     "weigh_patch",
+    "weigh_patch_and_tangents",
+    "over_36",
     "patch_position",
     "curve_position",
     "without_sign_of_zero",
