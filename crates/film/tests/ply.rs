@@ -13,6 +13,8 @@ fn vertex(i: u32) -> DumpVertex {
         face: -7 + i as i32,
         level: i as u8,
         kind: 5,
+        tex_coord: [f, 0.5],
+        shading_normal: [0.0, f, -1.0],
     }
 }
 
@@ -104,4 +106,35 @@ fn wrong_counts_are_refused_and_leave_no_file() {
         message(2_147_483_649, 0),
         "cannot write dump.ply: 2147483649 vertices are more than the 2147483647 that PLY indices reach"
     );
+}
+
+#[test]
+fn texture_coordinates_and_shading_normals_follow_where_they_are_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let all = DumpProperties { tex_coords: true, shading_normals: true };
+    for properties in
+        [DumpProperties { shading_normals: false, ..all }, DumpProperties { tex_coords: false, ..all }, all]
+    {
+        let path = folder.path().join("dump.ply");
+        write_ply_stream(&path, 3, properties, (0..3).map(vertex)).unwrap();
+        let bytes = fs::read(&path).unwrap();
+        let end = bytes.windows(11).position(|window| window == b"end_header\n").unwrap() + 11;
+        let header = String::from_utf8_lossy(&bytes[..end]).into_owned();
+        let names: Vec<&str> = header.lines().filter_map(|line| line.strip_prefix("property float ")).skip(8).collect();
+        let mut expected: Vec<f32> = Vec::new();
+        let mut expected_names = Vec::new();
+        if properties.tex_coords {
+            expected.extend(vertex(2).tex_coord);
+            expected_names.extend(["s", "t"]);
+        }
+        if properties.shading_normals {
+            expected.extend(vertex(2).shading_normal);
+            expected_names.extend(["sx", "sy", "sz"]);
+        }
+        assert_eq!(names, expected_names);
+        // What is last of the third vertex lies before the one triangle.
+        let last = bytes.len() - 13;
+        let expected: Vec<u8> = expected.into_iter().flat_map(f32::to_le_bytes).collect();
+        assert_eq!(&bytes[last - expected.len()..last], expected);
+    }
 }
