@@ -278,7 +278,7 @@ impl SurfaceArguments {
 /// A displacement map for all meshes instead of the scene's, or what is different with the scene's.
 #[derive(Debug, Default, Args)]
 pub struct DisplacementArguments {
-    /// Displacement map, .exr, .png or .tiff, instead of the scene's; <UDIM> in its name stands for the tile
+    /// Displacement map, .exr, .png or .tiff, instead of the scene's; `<UDIM>` in its name stands for the tile
     #[arg(long = "displacement", value_name = "FILE")]
     pub file: Option<PathBuf>,
     /// A texel displaces by S * (value - M) [default: 1]
