@@ -1,5 +1,7 @@
 //! A device with the programs of all spacings.
 
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
 use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, DeviceOptions, Encoder, Image, PipelineStatistics};
 use planish_render::{
     CapturedVertex, DrawOptions, DrawPasses, DumpPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, PatchKind,
@@ -10,11 +12,17 @@ use planish_shaders::DrawEntry;
 /// All spacings.
 pub const SPACINGS: [Spacing; 3] = [Spacing::Equal, Spacing::FractionalOdd, Spacing::FractionalEven];
 
+/// One device at a time: the software driver has all cores at work for one already, and several of its devices in one process,
+/// each with its own validation, have been seen to corrupt the heap now and then.
+static TURN: Mutex<()> = Mutex::new(());
+
 /// A device, and the stages of each spacing.
 pub struct Lab {
     pub device: Device,
     needs: [FrameNeeds; 3],
     stages: [FrameStages; 3],
+    // Given back last.
+    _turn: MutexGuard<'static, ()>,
 }
 
 impl Lab {
@@ -29,11 +37,13 @@ impl Lab {
     }
 
     pub fn with_needs(of: impl Fn(Spacing) -> FrameNeeds) -> Self {
+        // A test that failed leaves nothing behind that the next one minds.
+        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         let options = DeviceOptions { validation: true, selector: None, memory_budget: None };
         let device = Device::open(&options).expect("a Vulkan device with the validation layer");
         let needs = SPACINGS.map(of);
         let stages = needs.map(|needs| FrameStages::new(&device, &needs).expect("pipelines"));
-        Self { device, needs, stages }
+        Self { device, needs, stages, _turn: turn }
     }
 
     /// What its frames may need.

@@ -165,6 +165,11 @@ fn assert_complete(tables: &Tables, cut: &Cut) -> [usize; 2] {
         limits.extend((0..4).filter(|i| leaf.split >> i & 1 != 0).map(|i| face.midpoints[i]));
     }
     assert!(!limits.contains(&NONE), "a limit point is missing");
+    // Corners of patches that others share.
+    for patch in tables.patch_ranges[0].clone().chain(cut.patches.iter().copied()) {
+        let seams = tables.seams.get(tables.patches[patch as usize].seams as usize);
+        limits.extend(seams.into_iter().flat_map(|seams| seams.limits).filter(|&limit| limit != NONE));
+    }
     let mut sorted: Vec<u32> = limits.into_iter().collect();
     sorted.sort_unstable();
     assert_eq!(sorted, cut.limits);
@@ -340,7 +345,9 @@ fn an_isolated_vertex_has_the_theorys_counts_at_any_depth() {
             let points: Vec<usize> = cut.rows.iter().map(|level| level.iter().map(Vec::len).sum()).collect();
             let expected = |k: u32| if k == 0 || k > depth { 0 } else { 12 * n as usize + 1 };
             assert!((2..9).all(|k| points[k as usize] == expected(k)), "valence {n}, depth {depth}: {points:?}");
-            assert_eq!((cut.limits.len(), cut.truncated), (2 * n as usize + 1, 0));
+            // The vertex, and the ring of its faces on every level: patches share corners with them.
+            let rings = depth as usize + 1;
+            assert_eq!((cut.limits.len(), cut.truncated), (2 * n as usize * rings + 1, 0));
         }
     }
 }
