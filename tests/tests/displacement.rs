@@ -49,11 +49,11 @@ fn check(mesh: &Path, flags: &str, by: impl Fn(&Vertex) -> [f32; 3]) {
         let from = limit[&at(vertex)];
         assert_eq!(vertex.normal, from.normal, "the direction is the limit's normal: {vertex:?}");
         let moved = by(vertex);
-        for axis in 0..3 {
-            let expected = from.position[axis] + moved[axis];
-            let found = vertex.position[axis];
-            assert!((found - expected).abs() < TOLERANCE, "axis {axis}: {found}, expected {expected}: {vertex:?}");
-            farthest = farthest.max((found - from.position[axis]).abs());
+        let axes = from.position.into_iter().zip(moved).zip(vertex.position);
+        for ((from, moved), found) in axes {
+            let expected = from + moved;
+            assert!((found - expected).abs() < TOLERANCE, "{found}, expected {expected}: {vertex:?}");
+            farthest = farthest.max((found - from).abs());
         }
     }
     assert!(farthest > 0.1, "points move");
@@ -82,8 +82,7 @@ fn points_move_along_the_normal_by_what_the_map_says() {
 fn points_move_by_the_vector_that_the_map_says() {
     let (mesh, folder) = (scene("uv_continuous"), temporary());
     let path = map_in(folder.path());
-    let request =
-        DisplacementRequest { scale: 0.3, kind: DisplacementKind::Vector, ..DisplacementRequest::new(&path) };
+    let request = DisplacementRequest { scale: 0.3, kind: DisplacementKind::Vector, ..DisplacementRequest::new(&path) };
     let map = load_map(&mesh, &request);
     let flags = format!("--displacement {} --displacement-scale 0.3 --displacement-kind vector", path.display());
     check(&mesh, &flags, |vertex| map.sample(vertex.tex_coord, 0.0));
