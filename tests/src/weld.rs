@@ -65,6 +65,22 @@ pub fn faults(vertices: &[Vertex], cage: &Cage, by: Weld) -> Vec<String> {
     edges.faults
 }
 
+/// How many edges triangles run more often one way than the other, corners at one place being one point: none of a closed surface,
+/// whichever of its points are rounded to the same place.
+pub fn unbalanced_edge_count(vertices: &[Vertex]) -> usize {
+    let points = weld(vertices, Weld::Position);
+    let mut sums: HashMap<[u32; 2], i64> = HashMap::new();
+    for corners in points.as_chunks::<3>().0 {
+        for corner in 0..3 {
+            let [a, b] = [corners[corner], corners[(corner + 1) % 3]];
+            if a != b {
+                *sums.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { -1 };
+            }
+        }
+    }
+    sums.values().filter(|&&sum| sum != 0).count()
+}
+
 /// Where on these sides each point lies, in the side's parameter. Of corners that are one point, one at the side's end counts.
 fn places_on(sides: &HashSet<Side>, points: &[u32], vertices: &[Vertex]) -> HashMap<u32, BTreeMap<Side, f64>> {
     let mut places: HashMap<u32, BTreeMap<Side, f64>> = HashMap::new();

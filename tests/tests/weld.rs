@@ -7,7 +7,7 @@ use planish_tests::folder::temporary;
 use planish_tests::ply::{Dump, Vertex};
 use planish_tests::program::Planish;
 use planish_tests::repository::scene;
-use planish_tests::weld::{Weld, faults};
+use planish_tests::weld::{Weld, faults, unbalanced_edge_count};
 
 fn dump(mesh: &Path, flags: &str) -> Vec<Vertex> {
     let folder = temporary();
@@ -76,4 +76,15 @@ fn patches_by_themselves_leave_cracks() {
     let mesh = scene("adjacent_extraordinary");
     let found = faults(&dump(&mesh, "--tess 7.3 --no-watertight"), &Cage::read(&mesh), Weld::Position);
     assert!(found.iter().any(|fault| fault.starts_with("an open edge inside")), "{found:?}");
+}
+
+#[test]
+fn a_crack_far_from_the_origin_leaves_edges_that_are_not_balanced() {
+    let mesh = scene("far_from_origin");
+    let whole = dump(&mesh, "--tess 3");
+    assert_eq!(unbalanced_edge_count(&whole), 0);
+    assert!(unbalanced_edge_count(&whole[3..]) > 0, "without a triangle");
+    let mut moved = whole.clone();
+    moved[100].position[1] = f32::from_bits(moved[100].position[1].to_bits() ^ 1);
+    assert!(unbalanced_edge_count(&moved) > 0, "a vertex off by one bit");
 }
