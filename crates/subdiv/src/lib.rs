@@ -10,6 +10,7 @@ pub mod edits;
 pub mod error;
 pub mod eval;
 mod face_varying;
+pub mod gregory;
 pub mod limit;
 pub mod mesh;
 pub mod patch;

@@ -77,7 +77,7 @@ pub(crate) fn limit_mask_at_corners(level: &Level, corner: u32) -> (Vec<u32>, Ve
 
 /// The limit rule of a sector with so many faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum LimitRule {
+pub(crate) enum LimitRule {
     Smooth(u32),
     /// Between the two edges of a crease, or of the boundary.
     Boundary(u32),
@@ -85,6 +85,28 @@ enum LimitRule {
     Corner(u32),
     /// All around an interpolated vertex: the tip of a cone.
     Cone(u32),
+}
+
+/// The limit rule at a corner, once nothing is semi-sharp any more, and whether that takes levels.
+pub(crate) fn limit_rule(level: &Level, corner: u32) -> (LimitRule, bool) {
+    let vertex = level.origin(corner);
+    if level.tag(vertex).is_plain() {
+        return (mask_points(level, vertex, |_| {}), false);
+    }
+    let sharpness = SharpnessAtVertex::of(level, vertex);
+    let sector = level.sector(corner);
+    let decay = Decay::new(level, &sharpness);
+    (creased_rule(decay.last.before.0, sector.is_closed, sector.spokes.len() as u32), !decay.steps.is_empty())
+}
+
+/// The limit rule of a sector of a vertex of this rule. That of a dart is smooth.
+fn creased_rule(rule: VertexRule, is_closed: bool, face_count: u32) -> LimitRule {
+    match rule {
+        VertexRule::Smooth | VertexRule::Dart => LimitRule::Smooth(face_count),
+        VertexRule::Crease | VertexRule::Corner if is_closed => LimitRule::Cone(face_count),
+        VertexRule::Crease => LimitRule::Boundary(face_count),
+        VertexRule::Corner => LimitRule::Corner(face_count),
+    }
 }
 
 /// Points of the mask of a plain vertex: itself, then the edge's end and the opposite corner of each face in turn, and
@@ -149,12 +171,7 @@ fn creased_mask(level: &Level, corner: u32) -> (Vec<u32>, Vec<[f64; 3]>) {
     let face_count = ring.face_count as u32;
     let mut weights = Vec::with_capacity(ring.points.len());
     let (rule, ends) = decay.last.before;
-    let limit_rule = match rule {
-        VertexRule::Smooth | VertexRule::Dart => LimitRule::Smooth(face_count),
-        VertexRule::Crease | VertexRule::Corner if ring.is_closed => LimitRule::Cone(face_count),
-        VertexRule::Crease => LimitRule::Boundary(face_count),
-        VertexRule::Corner => LimitRule::Corner(face_count),
-    };
+    let limit_rule = creased_rule(rule, ring.is_closed, face_count);
     if rule == VertexRule::Dart {
         weights = dart_mask(&ring);
     } else {

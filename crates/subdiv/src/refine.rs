@@ -44,6 +44,8 @@ pub struct RefineOptions {
     /// The surface will be displaced: also where normals or texture coordinates differ on both sides of an edge, one of
     /// them is known to decide for both.
     pub displaced: bool,
+    /// Irregular faces are drawn as Gregory patches: `max_level` is 0.
+    pub gregory: bool,
     /// Face-varying channels are left out: the surface is not refined for their sake.
     pub ignores_channels: bool,
 }

@@ -3,6 +3,7 @@
 use crate::patch::{PatchInfo, RegularPatch, control_points};
 use crate::refine::{CreasePatches, Refinement, child_half_edge};
 use crate::tables::Tables;
+use crate::tables::gregory::GregoryBuilder;
 use crate::tables::limits::{LimitPoints, children};
 use crate::tables::seams::{
     FacesAbove, PatchSeams, SharedCorners, border_of_cut, borders, displacing_channel, limit_seats,
@@ -68,6 +69,11 @@ pub(super) fn add_faces(tables: &mut Tables, refinement: &Refinement) {
         let above = k.checked_sub(1).map(|above| (&levels[above], refinement.splits[above].child_corners.as_slice()));
         faces.add_patches(tables, refinement, &edges, above, &mut limits);
         faces.add_irregular(tables, refinement, &edges, levels.get(k + 1), &mut limits);
+    }
+    if refinement.options.gregory {
+        let mut gregory = GregoryBuilder::new(refinement, &first_points);
+        levels.iter().for_each(|faces| faces.add_gregory(&mut gregory, &mut limits));
+        tables.gregory = gregory.finish(limits.count());
     }
     tables.limit_seats = limit_seats(refinement, &limits.places);
     tables.limits = table;
@@ -229,6 +235,21 @@ impl<'a> LevelFaces<'a> {
             let edge = child_half_edge(0, level, corner, j);
             mask | u8::from(self.is_across(half_edge, &self.is_end)) << edge
         })
+    }
+
+    /// Adds the Gregory patch of every irregular face, in their order.
+    fn add_gregory(&self, gregory: &mut GregoryBuilder, limits: &mut LimitPoints) {
+        let (_, places) = self.patch_places();
+        for &face in self.irregular {
+            let sides = self.level.sides(face);
+            if sides != 4 {
+                gregory.push_nothing(sides);
+            } else if self.is_forced[face as usize] || !self.level.is_drawn(face) {
+                gregory.push_nothing(1);
+            } else {
+                gregory.push_quad(self.k, face, &places, limits);
+            }
+        }
     }
 
     fn add_irregular(

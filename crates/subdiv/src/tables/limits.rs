@@ -73,6 +73,11 @@ impl<'a> LimitPoints<'a> {
         self.point_at(k, corner)
     }
 
+    /// How many there are by now.
+    pub fn count(&self) -> usize {
+        self.table.rows.len()
+    }
+
     fn point_at(&mut self, k: u32, corner: u32) -> u32 {
         let level = &self.refinement.levels[k as usize];
         let vertex = level.origin(corner);

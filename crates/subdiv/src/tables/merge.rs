@@ -34,6 +34,8 @@ pub struct MeshRanges {
     pub stars: Range<u32>,
     /// Its limit points.
     pub limits: Range<u32>,
+    /// Its spokes of Gregory patches.
+    pub spokes: Range<u32>,
     /// Among the faces of uniform refinement.
     pub filling: Range<u32>,
     /// By level, among [`Tables::edits`].
@@ -53,6 +55,7 @@ impl Tables {
             edges: 0..self.edge_count,
             stars: 0..self.stars.count(),
             limits: 0..self.limit_point_count(),
+            spokes: 0..self.gregory.spokes.len() as u32,
             filling: 0..self.filling.len() as u32,
             edits: self.levels.iter().map(|level| level.edits.clone()).collect(),
         }
@@ -118,6 +121,7 @@ impl Tables {
             self.stencils.weights.len(),
             self.limits.indices.len(),
             self.limits.weights.len(),
+            self.gregory.indices.len(),
             self.stars.indices.len(),
             self.patches.len(),
             self.irregular.len(),
@@ -207,6 +211,8 @@ impl Tables {
         table.weights.extend(&part.limits.weights);
         let seats = part.limit_seats.iter();
         self.limit_seats.extend(seats.map(|seat| LimitSeat { canonical: seat.canonical + mesh.limits.start, ..*seat }));
+        mesh.spokes = following(self.gregory.spokes.len() as u32, part.gregory.spokes.len() as u32);
+        self.gregory.append_spokes(&part.gregory, points);
         mesh.stars = following(self.stars.count(), part.stars.count());
         self.stars.append(&part.stars, |point| points[point as usize]);
         mesh.filling = following(self.filling.len() as u32, part.filling.len() as u32);
@@ -251,6 +257,11 @@ impl Tables {
             _ if child & IrregularFace::IRREGULAR != 0 => child - next(&part.irregular_ranges) + next(&mesh.irregular),
             _ => child - next(&part.patch_ranges) + next(&mesh.patches),
         };
+        if !part.gregory.faces.is_empty() {
+            let own = &part.gregory.faces[to_usize(range(&part.irregular_ranges, k))];
+            let border = |border: Border| Border { patch: border.patch.wrapping_add(patch_shift(k)), ..border };
+            self.gregory.append_faces(own, mesh.spokes.start, mesh.limits.start, border);
+        }
         let faces = &part.irregular[to_usize(range(&part.irregular_ranges, k))];
         self.irregular.extend(faces.iter().map(|face| IrregularFace {
             children: face.children.map(child),
@@ -291,7 +302,7 @@ impl Tables {
 }
 
 impl StencilRow {
-    fn moved(self, first_index: u32, first_weight: u32) -> Self {
+    pub(super) fn moved(self, first_index: u32, first_weight: u32) -> Self {
         Self {
             first_index: self.first_index + first_index,
             first_weight: self.first_weight + first_weight,

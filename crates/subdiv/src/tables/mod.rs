@@ -4,6 +4,7 @@
 //! O(irregular faces x depth); nothing is composed down to the cage.
 
 mod face_varying;
+mod gregory;
 mod irregular;
 mod limits;
 mod lists;
@@ -23,6 +24,7 @@ use crate::stencil::{SharedWeights, StencilTable, has_large_faces};
 
 pub use crate::selection::PatchCounts;
 pub use face_varying::{FaceVaryingEvaluator, FaceVaryingPatch, FaceVaryingTable, TexTree};
+pub use gregory::{GregoryFace, GregoryKind, GregoryTable, Spoke};
 pub use irregular::IrregularFace;
 pub use lists::IndexLists;
 pub use merge::MeshRanges;
@@ -64,6 +66,8 @@ pub struct Tables {
     pub irregular: Vec<IrregularFace>,
     /// Places in `irregular`, by level.
     pub irregular_ranges: Vec<Range<u32>>,
+    /// Their Gregory patches, if they are drawn as such ([`crate::refine::RefineOptions::gregory`]).
+    pub gregory: GregoryTable,
     /// Number of edges that a face at them may split, of all levels.
     pub edge_count: u32,
     /// Stars of the corners of irregular faces: the points of the next level at each.

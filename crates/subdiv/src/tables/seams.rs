@@ -196,11 +196,14 @@ pub(super) fn border_of_cut(
     if !is_cut(level, channel, edge) {
         return None;
     }
+    let border = border_along(level, places, edge)?;
+    (border.patch < places[level.face(edge) as usize]).then_some(border)
+}
+
+/// The first patch of the same level along an edge, on the other side.
+pub(super) fn border_along(level: &Level, places: &[u32], edge: u32) -> Option<Border> {
     let across = first_patch_across(level, places, edge)?;
     let (own_face, face) = (level.face(edge), level.face(across));
-    if places[face as usize] > places[own_face as usize] {
-        return None;
-    }
     let own_edge = edge - level.half_edges(own_face).start;
     let other_edge = across - level.half_edges(face).start;
     let is_opposite = level.origin(across) != level.origin(edge);

@@ -3,6 +3,7 @@
 mod cages;
 mod edits;
 mod face_varying;
+mod gregory;
 mod merge;
 mod selection;
 mod surface;
