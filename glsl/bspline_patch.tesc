@@ -22,6 +22,8 @@ layout(location = 7) patch out uvec4 piece_first;
 layout(location = 8) patch out uvec4 piece_last;
 layout(location = 9) patch out uvec2 patch_places; // of its seams, or NONE; of its object
 
+#include "shared/levels.glsl"
+
 void main()
 {
     uint patch_place = push.list.v[list_place[0]].place;
@@ -40,27 +42,5 @@ void main()
     patch_words = uvec4(object.first_face + info.ptex_face, info.corner, info.flags | entry_split_edges(flags) << 14,
                         (push.first_patch_id + patch_place) | ((object.flags & OBJECT_MIRRORED) != 0u ? PATCH_MIRRORED : 0u));
     patch_places = uvec2(push.patches.v[patch_place].seams, entry.object);
-    low_factors = factors.low;
-    high_factors = factors.high;
-    uvec4 counts = uvec4(factors.counts);
-    uvec2 inner = uvec2(factors.inner_counts);
-    inner_factors = factors.inner;
-    if (CUT) {
-        uint pieces = entry_pieces(flags);
-        uvec2 piece = entry_piece(flags);
-        PieceFactors own = piece_factors(factors, pieces, piece);
-        piece_place = uvec3(piece, pieces);
-        piece_first = own.first;
-        piece_last = own.last;
-        counts = own.counts;
-        inner = own.inner;
-        inner_factors = -vec2(own.inner);
-    }
-    // Edge 0 is v = 0, 1 is u = 1, 2 is v = 1, 3 is u = 0; the tessellator numbers u = 0, v = 0, u = 1, v = 1.
-    gl_TessLevelOuter[0] = float(counts.w);
-    gl_TessLevelOuter[1] = float(counts.x);
-    gl_TessLevelOuter[2] = float(counts.y);
-    gl_TessLevelOuter[3] = float(counts.z);
-    gl_TessLevelInner[0] = float(inner.x);
-    gl_TessLevelInner[1] = float(inner.y);
+    set_factors(factors, flags);
 }

@@ -26,6 +26,8 @@ layout(location = 6) patch in uvec3 piece_place;
 layout(location = 7) patch in uvec4 piece_first;
 layout(location = 8) patch in uvec4 piece_last;
 layout(location = 9) patch in uvec2 patch_places; // of its seams, or NONE; of its object
+#include "shared/domain.glsl"
+#include "shared/border.glsl"
 
 uint own_place()
 {
@@ -63,31 +65,6 @@ struct Evaluated {
     BorderPoint decider; // where surfaces are displaced: the patch that says where to, if it is another one
 };
 
-precise vec3 over_36(vec3 a)
-{
-    precise vec3 result = a / 36.0;
-    return result;
-}
-
-precise vec3 patch_position(vec3 p[16], vec4 nu, vec4 nv)
-{
-    precise vec3 result = weigh_patch(p, nu, nv) / 36.0;
-    return result;
-}
-
-precise vec3 curve_position(vec3 p[4], vec4 n)
-{
-    precise vec3 result = weigh(p[0], p[1], p[2], p[3], n) / 6.0;
-    return result;
-}
-
-// Where all terms of a sum are 0 its sign depends on what was added: not any more.
-precise vec3 without_sign_of_zero(vec3 a)
-{
-    precise vec3 result = a + 0.0;
-    return result;
-}
-
 // What decides about a point on an edge: a patch along it, or the limit point that a corner is.
 void find_deciders(bvec4 is_on, Parameter u, Parameter v, out BorderPoint border, out uint border_edge, out uint limit)
 {
@@ -112,19 +89,6 @@ void find_deciders(bvec4 is_on, Parameter u, Parameter v, out BorderPoint border
     }
 }
 
-// The control points around an edge of another patch; the others have no weight there.
-void border_points(BorderPoint border, inout vec3 p[16])
-{
-    Object object = push.frame.v.scene.v.objects.v[patch_places.y];
-    uint boundary = patch_boundary(push.patches.v[border.place].info);
-    [[dont_unroll]] for (uint i = 0u; i < 16u; ++i) {
-        p[i] = vec3(0.0);
-        if (is_beside(border.edge, i)) {
-            p[i] = to_world(object, control_point_of(push.patches, push.points, border.place, i, boundary));
-        }
-    }
-}
-
 // The point on edges without a surface across: boundaries and infinite creases. There the surface is the curve of the points along
 // the edge, whatever lies beside it.
 vec3 sharp_position(uint sharp_edges, BorderPoint border, vec4 nu, vec4 nv)
@@ -144,14 +108,8 @@ vec3 sharp_position(uint sharp_edges, BorderPoint border, vec4 nu, vec4 nv)
         q[i] = control_point[along_edge(edge, i)];
     }
     if (border.place != NONE) {
-        Object object = push.frame.v.scene.v.objects.v[patch_places.y];
-        uint boundary = patch_boundary(push.patches.v[border.place].info);
-        [[dont_unroll]] for (uint i = 0u; i < 4u; ++i) {
-            q[i] = to_world(object, control_point_of(push.patches, push.points, border.place, along_edge(border.edge, i), boundary));
-        }
-        Parameter along = (border.edge & 1u) == 0u ? border.u : border.v;
-        vec4 slope;
-        cubic_basis(along.t, along.s, n, slope);
+        border_curve(border, q);
+        n = border_weights(border);
     }
     return curve_position(q, n);
 }
@@ -396,70 +354,15 @@ vec3 displace(inout Evaluated point, TexPoints tex)
     return shading_normal;
 }
 
-// The point at x of an edge of the patch, or of the piece's part of it.
-Parameter on_edge(uint edge, float x)
-{
-    float low = low_factors[edge];
-    float high = TRANSITION ? high_factors[edge] : 0.0;
-    if (!CUT) {
-        return edge_parameter(x, low, high);
-    }
-    float first = float(piece_first[edge]);
-    float last = float(piece_last[edge]);
-    float i = min(first + round(x * max(last - first, 1.0)), last);
-    return edge_point(i, low, high);
-}
-
-// The point at x of a row inside, along an axis.
-Parameter in_row(uint axis, float x)
-{
-    if (!CUT) {
-        return row_parameter(x, inner_factors[axis]);
-    }
-    float count = -inner_factors[axis];
-    return even_point(float(piece_place[axis]) * count + round(x * count), float(piece_place.z) * count);
-}
-
 void main()
 {
-    vec2 x = gl_TessCoord.xy;
-    // A point inside lies on the inner grid; one on an edge of the patch has that edge's own points.
-    bvec4 is_on = bvec4(x.y == 0.0, x.x == 1.0, x.y == 1.0, x.x == 0.0);
-    if (CUT) {
-        uint last = piece_place.z - 1u;
-        is_on = bvec4(is_on.x && piece_place.y == 0u, is_on.y && piece_place.x == last, is_on.z && piece_place.y == last,
-                      is_on.w && piece_place.x == 0u);
-    }
     Parameter u;
     Parameter v;
-    if (is_on.x) {
-        u = on_edge(0, x.x);
-    } else if (is_on.z) {
-        u = on_edge(2, x.x);
-    } else {
-        u = in_row(0, x.x);
-    }
-    if (is_on.w) {
-        u = Parameter(0.0, 1.0);
-        v = on_edge(3, x.y);
-    } else if (is_on.y) {
-        u = Parameter(1.0, 0.0);
-        v = on_edge(1, x.y);
-    } else {
-        v = in_row(1, x.y);
-    }
-    if (is_on.x) {
-        v = Parameter(0.0, 1.0);
-    } else if (is_on.z) {
-        v = Parameter(1.0, 0.0);
-    }
+    bvec4 is_on;
+    domain_point(u, v, is_on);
     PatchInfo info = PatchInfo(patch_words.x, patch_words.y, patch_words.z);
     Evaluated point;
     if (WATERTIGHT) {
-        // Where a segment has no length, or a piece has one point alone of an edge, that point may be a corner: so are all at its place.
-        bvec2 is_along = bvec2(is_on.x || is_on.z, is_on.y || is_on.w);
-        is_on = bvec4(is_on.x || (is_along.y && v.t == 0.0), is_on.y || (is_along.x && u.s == 0.0),
-                      is_on.z || (is_along.y && v.s == 0.0), is_on.w || (is_along.x && u.t == 0.0));
         point = evaluate_watertight(u, v, is_on, info);
     } else {
         point = evaluate(u, v, info);
@@ -475,8 +378,6 @@ void main()
         Object object = scene.v.objects.v[patch_places.y];
         st = tree_tex_coord(scene, object, info.ptex_face - object.first_face, ptex_uv(info, vec2(u.t, v.t)));
     }
-    // -2 stands for a factor of 1 beside edges with more segments.
-    float factor = CUT ? -max(inner_factors.x, inner_factors.y) * float(piece_place.z) : max(max(inner_factors.x, inner_factors.y), 1.0);
     put_surface_point(point.position, point.normal, shading_normal, vec2(u.t, v.t), st, info, patch_words.w,
-                      patch_transition(info) != 0u ? KIND_TRANSITION : KIND_REGULAR, factor);
+                      patch_transition(info) != 0u ? KIND_TRANSITION : KIND_REGULAR, shown_factor());
 }

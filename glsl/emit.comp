@@ -1,7 +1,8 @@
 #version 460
-// variants: patches=PATCHES leaves=LEAVES cut=CUT
+// variants: patches=PATCHES leaves=LEAVES cut=CUT gregory=GREGORY_PATCHES gregory_cut=GREGORY_CUT
 // Hands on what may be seen to the draw lists (DFAS section 6.1). PATCHES and LEAVES: one thread a patch; patches of more
-// segments than the tessellator makes go to the CUT variant, whose groups hand on the pieces of one patch each.
+// segments than the tessellator makes go to the CUT variant, whose groups hand on the pieces of one patch each. GREGORY_PATCHES and
+// GREGORY_CUT do the same for irregular faces that are drawn as Gregory patches.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/append.glsl"
 #include "shared/control_points.glsl"
@@ -21,7 +22,11 @@ layout(push_constant, scalar) uniform EmitPush {
 
 #include "shared/draw_lists.glsl"
 
-#if defined(LEAVES)
+#if defined(GREGORY_PATCHES) || defined(GREGORY_CUT)
+#include "shared/gregory.glsl"
+#endif
+
+#if defined(LEAVES) || defined(GREGORY_PATCHES) || defined(GREGORY_CUT)
 uint split_edges_of(Object object, uint place)
 {
     uint result = 0u;
@@ -30,7 +35,9 @@ uint split_edges_of(Object object, uint place)
     }
     return result;
 }
+#endif
 
+#if defined(LEAVES)
 // Whether nothing can be seen of the triangles of a quad, of which 8 points are given: corners, and the middles of split edges.
 bool is_unseen(vec3 p[8], uint split_edges, FrameInput frame, Object object)
 {
@@ -116,7 +123,9 @@ void main()
         }
     }
 }
-#else
+#endif
+
+#if defined(PATCHES) || defined(CUT)
 uint split_edges_of(Object object, uint place)
 {
     uint result = 0u;
@@ -135,10 +144,28 @@ void control_points(Object object, uint place, PatchInfo info, out vec3 points[1
 }
 #endif
 
-#if defined(PATCHES)
+#if defined(PATCHES) || defined(GREGORY_PATCHES)
 shared uint level_counts[2 * LEVEL_COUNT];
 shared uint cut_patch_count;
 shared uint first_cut;
+
+// The place in a list of patches that are cut, of the patch of this thread, if it is one: then its place among those of the group is
+// given. Else, and where it does not fit, NONE. A group of the CUT variants goes over one patch.
+uint append_cut(uint list, bool is_cut, uint place)
+{
+    barrier();
+    if (gl_LocalInvocationID.x == 0u && cut_patch_count != 0u) {
+        first_cut = atomicAdd(push.scene.v.heads.v[list].count, cut_patch_count);
+        uint groups = min(first_cut + cut_patch_count, push.scene.v.heads.v[list].capacity);
+        atomicMax(push.scene.v.heads.v[list].groups_x, min(groups, 65535u));
+        atomicMax(push.scene.v.heads.v[list].groups_y, (groups + 65534u) / 65535u);
+    }
+    barrier();
+    return is_cut && first_cut + place < push.scene.v.heads.v[list].capacity ? first_cut + place : NONE;
+}
+#endif
+
+#if defined(PATCHES)
 
 // The patch that a thread is for; false for none.
 bool patch_of(uint group, out ListItem item)
@@ -209,17 +236,9 @@ void main()
     }
     append_entries(DRAW_REGULAR, is_seen && pieces == 1u && split_edges == 0u, entry, vertices);
     append_entries(DRAW_TRANSITION, is_seen && pieces == 1u && split_edges != 0u, entry, vertices);
-    barrier();
-    if (gl_LocalInvocationID.x == 0u && cut_patch_count != 0u) {
-        // A group a patch.
-        first_cut = atomicAdd(push.scene.v.heads.v[LIST_CUT].count, cut_patch_count);
-        uint groups = min(first_cut + cut_patch_count, push.scene.v.heads.v[LIST_CUT].capacity);
-        atomicMax(push.scene.v.heads.v[LIST_CUT].groups_x, min(groups, 65535u));
-        atomicMax(push.scene.v.heads.v[LIST_CUT].groups_y, (groups + 65534u) / 65535u);
-    }
-    barrier();
-    if (is_seen && pieces > 1u && first_cut + cut_place < push.scene.v.heads.v[LIST_CUT].capacity) {
-        push.scene.v.cut_items.v[first_cut + cut_place] = item;
+    uint cut = append_cut(LIST_CUT, is_seen && pieces > 1u, cut_place);
+    if (cut != NONE) {
+        push.scene.v.cut_items.v[cut] = item;
     }
     for (uint i = gl_LocalInvocationID.x; i < LEVEL_COUNT; i += CHUNK) {
         if (level_counts[i] != 0u) {
@@ -268,6 +287,127 @@ void main()
         DrawEntry entry = DrawEntry(item.place, item.object, entry_flags(split_edges, pieces, piece),
                                     triangle_count(own.counts, own.inner), factors.low, factors.high, factors.inner);
         append_entries(DRAW_CUT, is_seen, entry, (own.inner.x + 1u) * (own.inner.y + 1u));
+    }
+}
+#endif
+
+#if defined(GREGORY_PATCHES) || defined(GREGORY_CUT)
+// Whether a Gregory patch lies outside of the view: it lies in the convex hull of its control points.
+bool is_outside(Object object, GregoryFace face, FrameInput frame)
+{
+    EmitView view = frame.view;
+    uint kind = gregory_kind(face);
+    uint count = kind == GREGORY_TRIANGLE ? 15u : 20u;
+    vec3 p[20];
+    float largest_offset = 0.0;
+    float largest = 0.0;
+    [[dont_unroll]] for (uint i = 0u; i < 20u; ++i) {
+        // A triangle has its first point again.
+        uint place = i < count ? i : 0u;
+        vec3 point = vec3(0.0);
+        for (bool is_open = kind == GREGORY_NGON; is_open; is_open = false) {
+            point = ngon_point(push.scene, face, place);
+        }
+        for (bool is_open = kind != GREGORY_NGON; is_open; is_open = false) {
+            point = corner_point(push.scene, face, place, kind == GREGORY_TRIANGLE ? 3u : 4u);
+        }
+        p[i] = to_world(object, point);
+        precise vec3 offset = p[i] - view.eye;
+        largest_offset = max(largest_offset, largest_component(offset));
+        largest = max(largest, largest_component(p[i]));
+    }
+    Scale scale = scale_of(view, 1.0, largest_offset, largest);
+    precise float margin = object.displacement * scale.factor;
+    uint planes = 31u;
+    [[dont_unroll]] for (uint i = 0u; i < 20u; ++i) {
+        precise vec3 offset = p[i] * scale.factor - scale.eye;
+        planes &= outside_planes(offset, view, scale, margin);
+    }
+    return planes != 0u;
+}
+#endif
+
+#if defined(GREGORY_PATCHES)
+void main()
+{
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    for (uint i = gl_LocalInvocationID.x; i < 2u * LEVEL_COUNT; i += CHUNK) {
+        level_counts[i] = 0u;
+    }
+    if (gl_LocalInvocationID.x == 0u) {
+        cut_patch_count = 0u;
+    }
+    barrier();
+    uint thread = group * CHUNK + gl_LocalInvocationID.x;
+    bool is_seen = thread < list_length(push.scene.v.heads, LIST_LEAVES);
+    ListItem item = ListItem(0u, 0u);
+    uint pieces = 0u;
+    uint vertices = 1u;
+    uint cut_place = 0u;
+    bool is_triangle = false;
+    DrawEntry entry;
+    if (is_seen) {
+        item = push.scene.v.leaf_items.v[thread];
+        Object object = push.scene.v.objects.v[item.object];
+        FrameInput frame = push.scene.v.frame_input.v;
+        PatchInfo info = push.scene.v.irregular.v[item.place].info;
+        GregoryFace face = push.scene.v.gregory.v[item.place];
+        is_triangle = gregory_kind(face) == GREGORY_TRIANGLE;
+        uint split_edges = split_edges_of(object, item.place);
+        PatchFactors factors = patch_factors(face_density(push.scene, object, info.ptex_face), info, split_edges);
+        pieces = cut_count(factors);
+        is_seen = !is_culled(frame) || !is_outside(object, face, frame);
+        uvec2 inner = uvec2(factors.inner_counts);
+        vertices = (inner.x + 1u) * (inner.y + 1u);
+        entry = DrawEntry(item.place, item.object, entry_flags(split_edges, 0u, uvec2(0u)),
+                          triangle_count(uvec4(factors.counts), inner), factors.low, factors.high, factors.inner);
+        // A triangle is one patch: its first third is counted.
+        if (is_seen && (!is_triangle || gregory_part(face) == 0u)) {
+            atomicAdd(level_counts[patch_level(info) + (is_triangle ? LEVEL_COUNT - 1u : 0u)], 1u);
+        }
+        if (is_seen && pieces > 1u) {
+            cut_place = atomicAdd(cut_patch_count, 1u);
+        }
+    }
+    append_entries(DRAW_GREGORY, is_seen && pieces == 1u && !is_triangle, entry, vertices);
+    append_entries(DRAW_TRIANGLE, is_seen && pieces == 1u && is_triangle, entry, vertices);
+    uint cut = append_cut(LIST_CUT_GREGORY, is_seen && pieces > 1u, cut_place);
+    if (cut != NONE) {
+        push.scene.v.cut_gregory_items.v[cut] = item;
+    }
+    for (uint i = gl_LocalInvocationID.x; i < LEVEL_COUNT; i += CHUNK) {
+        if (level_counts[i] != 0u) {
+            atomicAdd(push.scene.v.counts.v.gregory[i], level_counts[i]);
+        }
+        if (level_counts[LEVEL_COUNT + i] != 0u) {
+            atomicAdd(push.scene.v.counts.v.triangle[i], level_counts[LEVEL_COUNT + i]);
+        }
+    }
+}
+#endif
+
+#if defined(GREGORY_CUT)
+void main()
+{
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (group >= list_length(push.scene.v.heads, LIST_CUT_GREGORY)) {
+        return;
+    }
+    ListItem item = push.scene.v.cut_gregory_items.v[group];
+    Object object = push.scene.v.objects.v[item.object];
+    PatchInfo info = push.scene.v.irregular.v[item.place].info;
+    bool is_triangle = gregory_kind(push.scene.v.gregory.v[item.place]) == GREGORY_TRIANGLE;
+    uint split_edges = split_edges_of(object, item.place);
+    PatchFactors factors = patch_factors(face_density(push.scene, object, info.ptex_face), info, split_edges);
+    uint pieces = cut_count(factors);
+    for (uint first = 0u; first < pieces * pieces; first += CHUNK) {
+        uint i = first + gl_LocalInvocationID.x;
+        uvec2 piece = uvec2(i % pieces, i / pieces);
+        PieceFactors own = piece_factors(factors, pieces, piece);
+        DrawEntry entry = DrawEntry(item.place, item.object, entry_flags(split_edges, pieces, piece),
+                                    triangle_count(own.counts, own.inner), factors.low, factors.high, factors.inner);
+        append_entries(is_triangle ? DRAW_TRIANGLE_CUT : DRAW_GREGORY_CUT, i < pieces * pieces, entry,
+                       (own.inner.x + 1u) * (own.inner.y + 1u));
     }
 }
 #endif

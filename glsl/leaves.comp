@@ -1,6 +1,6 @@
 #version 460
 // One thread marks what one irregular leaf is drawn with: the limits of its corners, and of the middles of its edges where the
-// neighbour is refined.
+// neighbour is refined; or the limit points that its Gregory patch is made of.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/marks.glsl"
 layout(local_size_x = 64) in;
@@ -17,6 +17,15 @@ void main()
         return;
     }
     ListItem item = push.scene.v.leaf_items.v[thread];
+    if (GREGORY) {
+        for (uint i = 0; i < 4; ++i) {
+            mark_corner(push.scene, push.scene.v.gregory.v[item.place].limits[i]);
+            if ((push.scene.v.irregular.v[item.place].flags >> (FACE_STAR_LIMITS_SHIFT + i) & 1u) != 0u) {
+                mark_star(push.scene, push.scene.v.irregular.v[item.place].stars[i]);
+            }
+        }
+        return;
+    }
     uint first_edge = push.scene.v.objects.v[item.object].first_edge;
     for (uint i = 0; i < 4; ++i) {
         mark_corner(push.scene, push.scene.v.irregular.v[item.place].limits[i]);

@@ -13,7 +13,7 @@ layout(push_constant, scalar) uniform Push {
     LimitWeights weights; // of the position and of two tangents
     Indices in_use; // limit points
     ListHeads head; // their number
-    LimitTangentTable tangents; // where surfaces are displaced
+    LimitTangentTable tangents; // where surfaces are displaced, or have Gregory patches
 } push;
 
 void main()
@@ -41,7 +41,7 @@ void main()
     result.position = position;
     result.normal = normal;
     push.limits.v[limit_index] = result;
-    if (DISPLACED) {
+    if (DISPLACED || GREGORY) {
         push.tangents.v[limit_index] = LimitTangents(tangent0, tangent1);
     }
 }

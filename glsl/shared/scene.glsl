@@ -62,7 +62,8 @@ const uint LIST_BASE = 3;      // chunks of regular patches of level 0
 const uint LIST_PATCHES = 4;   // regular patches of finer levels
 const uint LIST_LEAVES = 5;    // irregular faces that are not refined
 const uint LIST_CUT = 6;       // patches that are cut
-const uint LIST_ACTIVE = 7;    // + level
+const uint LIST_CUT_GREGORY = 7; // Gregory patches that are cut
+const uint LIST_ACTIVE = 8;    // + level
 const uint LIST_PHASES = LIST_ACTIVE + LEVEL_COUNT; // + phase
 const uint MAX_PHASES = 2 * LEVEL_COUNT + 1;
 const uint LIST_COUNT = LIST_PHASES + MAX_PHASES;
@@ -120,13 +121,19 @@ const uint DRAW_REGULAR = 0;
 const uint DRAW_TRANSITION = 1;
 const uint DRAW_FILLING = 2;
 const uint DRAW_CUT = 3;
-const uint DRAW_COUNT = 4;
+const uint DRAW_GREGORY = 4;
+const uint DRAW_GREGORY_CUT = 5;
+const uint DRAW_TRIANGLE = 6; // thirds of Gregory triangles
+const uint DRAW_TRIANGLE_CUT = 7;
+const uint DRAW_COUNT = 8;
 
 // What a frame drew and computed: patches by level, of each kind.
 struct FrameCounts {
     uint regular[LEVEL_COUNT];
     uint transition[LEVEL_COUNT];
     uint filling[LEVEL_COUNT];
+    uint gregory[LEVEL_COUNT];  // quads
+    uint triangle[LEVEL_COUNT];
     uint truncated;
     uint density_bits; // the largest density, as its bits
 };
@@ -166,6 +173,8 @@ struct SceneData {
     RegularPatches patches;
     SeamTable seams;
     IrregularFaces irregular;
+    GregoryFaces gregory;
+    SpokePoints spokes;
     PtexFaces ptex_faces;
     Indices neighbour_first; // slot to its first in `neighbours`
     Indices neighbours;
@@ -194,6 +203,7 @@ struct SceneData {
     ListItems patch_items;
     ListItems leaf_items;
     ListItems cut_items;
+    ListItems cut_gregory_items;
     ListHeads heads;
     DrawHeads draw_heads;
     DrawEntries entries;
@@ -218,6 +228,8 @@ layout(constant_id = 4) const bool PLACED = true;
 layout(constant_id = 6) const bool DISPLACED = false;
 // Whether texture coordinates are asked for.
 layout(constant_id = 7) const bool TEX_COORDS = false;
+// Whether irregular faces are drawn as Gregory patches.
+layout(constant_id = 8) const bool GREGORY = false;
 
 vec3 to_world(Object object, vec3 p)
 {

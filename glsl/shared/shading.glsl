@@ -7,6 +7,7 @@ const uint VIEW_PATCH = 2;
 const uint VIEW_LEVEL = 3;
 const uint VIEW_TESS = 4;
 const uint VIEW_UV = 5;
+const uint VIEW_GREGORY = 6; // patches in the colours of Loop et al. 2009
 
 // Unit directions to the lights.
 const vec3 TO_KEY = vec3(0.554, 0.755, 0.352);
@@ -44,6 +45,12 @@ vec3 hue(float turns)
     return 0.5 + 0.5 * cos(6.2831853 * phase);
 }
 
+// A brightness for a patch, neighbours apart.
+float varied(uint patch_id)
+{
+    return 0.7 + 0.6 * fract(float(patch_id % 4096u) * 0.61803399);
+}
+
 vec3 level_colour(uint level)
 {
     const vec3 COLOURS[6] = vec3[6](vec3(0.10, 0.25, 0.70), vec3(0.08, 0.55, 0.22), vec3(0.80, 0.55, 0.05),
@@ -59,10 +66,14 @@ vec3 view_color(uint view, vec3 normal, vec3 to_eye, vec2 uv, uvec4 ids, float f
     case VIEW_PATCH: {
         // Kind by hue (regular blue, transition red, filling green, semi-sharp crease orange, boundary and infinitely
         // sharp crease cyan), the patch by brightness.
-        const vec3 KINDS[5] = vec3[5](vec3(0.12, 0.25, 0.62), vec3(0.65, 0.12, 0.10), vec3(0.15, 0.55, 0.18),
-                                      vec3(0.80, 0.38, 0.05), vec3(0.06, 0.50, 0.58));
-        float vary = 0.7 + 0.6 * fract(float(ids.y % 4096u) * 0.61803399);
-        return lit(normal, to_eye, KINDS[ids.w % 5] * vary);
+        const vec3 KINDS[8] = vec3[8](vec3(0.12, 0.25, 0.62), vec3(0.65, 0.12, 0.10), vec3(0.15, 0.55, 0.18), vec3(0.40, 0.14, 0.55),
+                                      vec3(0.15, 0.55, 0.18), vec3(0.50), vec3(0.80, 0.38, 0.05), vec3(0.06, 0.50, 0.58));
+        return lit(normal, to_eye, KINDS[ids.w % 8] * varied(ids.y));
+    }
+    case VIEW_GREGORY: {
+        // Regular gold, also along creases and boundaries; irregular quads purple, triangles green.
+        vec3 kind = ids.w == 3u ? vec3(0.34, 0.12, 0.48) : (ids.w == 4u ? vec3(0.15, 0.50, 0.16) : vec3(0.74, 0.50, 0.10));
+        return lit(normal, to_eye, kind * varied(ids.y));
     }
     case VIEW_LEVEL:
         return lit(normal, to_eye, level_colour(ids.z));

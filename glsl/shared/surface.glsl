@@ -10,9 +10,11 @@
 const uint KIND_REGULAR = 0;
 const uint KIND_TRANSITION = 1;
 const uint KIND_FILLING = 2;
+const uint KIND_GREGORY_QUAD = 3;
+const uint KIND_GREGORY_TRIANGLE = 4;
 // Shown, not dumped.
-const uint KIND_CREASE = 3;
-const uint KIND_BOUNDARY = 4;
+const uint KIND_CREASE = 6;
+const uint KIND_BOUNDARY = 7;
 
 #if defined(DUMP)
 layout(xfb_buffer = 0, xfb_stride = 60) out;

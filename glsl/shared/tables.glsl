@@ -64,6 +64,42 @@ struct IrregularFace {
     uint flags;
 };
 
+// What an irregular face is drawn as where it is a Gregory patch.
+const uint GREGORY_NONE = 0;
+const uint GREGORY_QUAD = 1;
+const uint GREGORY_NGON = 2;     // the quad at a corner of a face of more than four sides
+const uint GREGORY_TRIANGLE = 3; // + part: the third of a triangle at that corner
+
+// An irregular face as a Gregory patch. Seats are corners; of a part of a face of more than four sides the corner before, the
+// corner, the corner after and the centre. Edge i runs from seat i to the next; of such a part: from the corner before, to the corner
+// after, from the centre to the middle of the edge before, and to that of the edge after.
+struct GregoryFace {
+    uint limits[4];
+    uint first[4];    // the spoke of each edge at its first end
+    uint last[4];     // and at its other end
+    float cosines[4]; // of the angle between neighbouring tangents at each seat
+    uint borders[4];  // the bicubic patch across each edge, as PatchSeams has them
+    uint flags;       // bits 0-2 the kind, bits 4-7 edges without a smooth surface across
+};
+
+// A limit point's weights for what it gives to the patches along an edge.
+struct Spoke {
+    vec2 along;      // of its tangents in the edge point
+    float direct;    // of the vector to the edge's other end
+    uint end;        // the point there
+    uint is_projected; // 1: of that vector only what lies in the tangent plane
+    uint before;     // spokes around the limit point, or NONE
+    uint after;
+    StencilRow row;  // of the vector beside
+};
+
+// What a limit point gives: the edge point, and two vectors to the left of the edge.
+struct SpokePoint {
+    vec3 edge;
+    vec3 across;
+    vec3 beside;
+};
+
 // Limit points at (0,0), (1,0), (1,1), (0,1).
 struct FillingQuad {
     uint corners[4];
@@ -118,6 +154,10 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Lim
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RegularPatches { RegularPatch v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SeamTable { PatchSeams v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer IrregularFaces { IrregularFace v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer GregoryFaces { GregoryFace v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Spokes { Spoke v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SpokeRanges { uvec2 v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SpokePoints { SpokePoint v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FillingQuads { FillingQuad v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LimitTangentTable { LimitTangents v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer LimitSeats { LimitSeat v[]; };

@@ -13,8 +13,8 @@ use planish_render::{Density, SurfaceMethod};
 use crate::aov::AovList;
 use crate::frames::FrameRange;
 use crate::names::{
-    CreasePatchesName, DisplacementKindName, DisplacementLayoutName, LodName, MethodName, SchemeName, SpacingName,
-    ViewName, name_of,
+    CreasePatchesName, DisplacementKindName, DisplacementLayoutName, GregoryNormalsName, LodName, MethodName,
+    SchemeName, SpacingName, ViewName, name_of,
 };
 use crate::values::{self, FrameRate, MAX_LEVEL};
 
@@ -177,6 +177,9 @@ pub struct BenchArguments {
     /// Spacing of tessellated points
     #[arg(long, value_enum, default_value_t = SpacingName::Equal)]
     pub spacing: SpacingName,
+    /// Normals of Gregory patches: of their Bezier form, exact along edges, or of the rational patch
+    #[arg(long, value_enum, default_value_t = GregoryNormalsName::Approximate)]
+    pub gregory_normals: GregoryNormalsName,
     /// Trade bitwise equal seams for speed
     #[arg(long)]
     pub no_watertight: bool,
@@ -236,6 +239,9 @@ pub struct SurfaceArguments {
     /// Creases that are patches of their own, instead of being refined to the last level
     #[arg(long, value_enum, default_value_t = CreasePatchesName::Infinite)]
     pub crease_patches: CreasePatchesName,
+    /// Normals of Gregory patches: of their Bezier form, exact along edges, or of the rational patch
+    #[arg(long, value_enum, default_value_t = GregoryNormalsName::Approximate)]
+    pub gregory_normals: GregoryNormalsName,
     /// Trade bitwise equal seams for speed
     #[arg(long)]
     pub no_watertight: bool,
@@ -247,8 +253,11 @@ impl SurfaceArguments {
         match self.method {
             MethodName::Fas => Ok(SurfaceMethod::Fas),
             MethodName::Dfas => Ok(SurfaceMethod::Dfas),
+            MethodName::Gregory => Ok(SurfaceMethod::Gregory),
             MethodName::Uniform => Ok(SurfaceMethod::Uniform),
-            other => bail!("method {} is not available yet (available: fas, dfas, uniform)", name_of(other)),
+            other @ MethodName::Table => {
+                bail!("method {} is not available yet (available: fas, dfas, gregory, uniform)", name_of(other))
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use planish_render::{Preprocessed, SurfaceDesc, SurfaceMethod, preprocess};
 use planish_subdiv::edits::deepest_level;
 use planish_subdiv::mesh::{BoundaryInterpolation, Creasing, FaceVaryingInterpolation, TriangleSubdivision};
 use planish_subdiv::selection::{PatchCounts, deepest_cut};
-use planish_subdiv::tables::{IndexLists, Tables};
+use planish_subdiv::tables::{GregoryKind, IndexLists, Tables};
 use planish_subdiv::{ControlMesh, patch::PatchInfo};
 use serde::Serialize;
 
@@ -89,12 +89,15 @@ struct RefinementInfo {
 }
 
 /// What one level holds.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct LevelInfo {
     points: u64,
     regular: u32,
     transition: u32,
     quad: u32,
+    /// Gregory patches of 20 points, and triangles of 15.
+    gregory_quad: u32,
+    gregory_triangle: u32,
 }
 
 impl Info {
@@ -219,6 +222,8 @@ impl RefinementInfo {
                 regular: counts.regular,
                 transition: counts.transition,
                 quad: counts.filling,
+                gregory_quad: counts.gregory,
+                gregory_triangle: counts.triangle,
             }
         });
         let point_bytes = size_of::<[f32; 3]>() as u64;
@@ -243,16 +248,15 @@ impl RefinementInfo {
     }
 
     fn levels_table(&self) -> TextTable {
-        let mut table = TextTable::new(&["level", "points", "regular", "transition", "quad"]);
-        let mut sum = LevelInfo { points: 0, regular: 0, transition: 0, quad: 0 };
+        let columns = ["level", "points", "regular", "transition", "quad", "Gregory quad", "Gregory triangle"];
+        // Methods without Gregory patches have no columns for them.
+        let count = if self.method == "gregory" { columns.len() } else { 5 };
+        let mut table = TextTable::new(&columns[..count]);
+        let mut sum = LevelInfo::default();
         let row = |name: String, level: &LevelInfo| {
-            [
-                name,
-                level.points.to_string(),
-                level.regular.to_string(),
-                level.transition.to_string(),
-                level.quad.to_string(),
-            ]
+            let counts = [level.regular, level.transition, level.quad, level.gregory_quad, level.gregory_triangle];
+            let cells = [name, level.points.to_string()].into_iter().chain(counts.map(|count| count.to_string()));
+            cells.take(count).collect::<Vec<_>>()
         };
         for (k, level) in self.levels.iter().enumerate() {
             table.push(row(k.to_string(), level));
@@ -260,6 +264,8 @@ impl RefinementInfo {
             sum.regular += level.regular;
             sum.transition += level.transition;
             sum.quad += level.quad;
+            sum.gregory_quad += level.gregory_quad;
+            sum.gregory_triangle += level.gregory_triangle;
         }
         table.push(row("all".to_owned(), &sum));
         table
@@ -271,6 +277,17 @@ fn patch_counts(desc: &SurfaceDesc, made: &Preprocessed) -> Vec<PatchCounts> {
     let mut counts = vec![PatchCounts::default(); made.tables.last_level as usize + 1];
     if desc.method == SurfaceMethod::Uniform {
         counts[made.tables.last_level as usize].filling = made.tables.filling.len() as u32;
+        return counts;
+    }
+    if desc.method == SurfaceMethod::Gregory {
+        counts[0].regular = made.tables.patches.len() as u32;
+        for (face, gregory) in made.tables.irregular.iter().zip(&made.tables.gregory.faces) {
+            match gregory.kind {
+                GregoryKind::Quad | GregoryKind::PartOfNgon => counts[usize::from(face.info.level)].gregory += 1,
+                GregoryKind::PartOfTriangle(0) => counts[0].triangle += 1,
+                GregoryKind::PartOfTriangle(_) | GregoryKind::None => {}
+            }
+        }
         return counts;
     }
     for mesh in &made.meshes {

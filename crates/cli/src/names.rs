@@ -24,6 +24,15 @@ pub enum LodName {
     Object,
 }
 
+/// Normals of Gregory patches by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum GregoryNormalsName {
+    /// Of the Bezier form (Loop et al. 2009, section 4.4)
+    Approximate,
+    /// Of the rational patch
+    Exact,
+}
+
 /// Subdivision schemes by name.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum SchemeName {

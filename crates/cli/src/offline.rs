@@ -17,7 +17,7 @@ use crate::args::{DeviceArguments, SurfaceArguments, ViewArguments};
 use crate::cage::{Cage, milliseconds};
 use crate::console::Console;
 use crate::frames::FrameRange;
-use crate::names::LodName;
+use crate::names::{GregoryNormalsName, LodName};
 
 /// What a plan is made for.
 pub struct PlanSetting {
@@ -30,6 +30,8 @@ pub struct PlanSetting {
     pub size: [u32; 2],
     /// Seams have the same bits on both sides.
     pub watertight: bool,
+    /// Gregory patches have the normals of the rational patch.
+    pub exact_normals: bool,
     pub options: FrameOptions,
 }
 
@@ -82,6 +84,7 @@ impl Plan {
             spacing: surface.spacing.into(),
             size: view.size,
             watertight: !surface.no_watertight,
+            exact_normals: surface.gregory_normals == GregoryNormalsName::Exact,
             options,
         };
         Self::of(cage, &setting, cameras)
@@ -98,11 +101,14 @@ impl Plan {
             let frame_camera = frame_camera(camera, setting.size);
             density = density.max(largest_density(&cage.meshes(), &seen, &frame_camera, &setting.options)?);
         }
-        let level = isolation_level(density, setting.max_level);
+        let is_gregory = setting.method == SurfaceMethod::Gregory;
+        let level = if is_gregory { 0 } else { isolation_level(density, setting.max_level) };
         let needs = FrameNeeds {
             watertight: setting.watertight,
             displaced: cage.is_displaced(),
             tex_coords: cage.has_uv(),
+            gregory: is_gregory,
+            exact_normals: setting.exact_normals,
             ..frame_needs(setting.spacing, density, &objects)
         };
         Ok(Self {
@@ -133,6 +139,20 @@ impl Plan {
     }
 }
 
+/// Refuses what method gregory does not have.
+fn check_gregory(cage: &Cage, plan: &Plan) -> Result<()> {
+    if cage.is_displaced() {
+        bail!("method gregory draws surfaces without displacement so far: expected no displacement map");
+    }
+    if cage.meshes().iter().any(|mesh| !mesh.edits.is_empty()) {
+        bail!("method gregory has one patch a face of the cage: expected no hierarchical edits");
+    }
+    if plan.desc.crease_patches == CreasePatches::Single {
+        bail!("method gregory has no closed form of semi-sharp creases: expected --crease-patches infinite or none");
+    }
+    Ok(())
+}
+
 /// What frames of about this density need; nothing is culled, and seams are watertight. Twice as dense a frame, of a cage that moves, has all it needs.
 pub fn frame_needs(spacing: Spacing, density: f32, objects: &[ObjectDesc]) -> FrameNeeds {
     let placed = objects.iter().any(|object| object.to_world != Affine3A::IDENTITY);
@@ -144,6 +164,8 @@ pub fn frame_needs(spacing: Spacing, density: f32, objects: &[ObjectDesc]) -> Fr
         watertight: true,
         displaced: false,
         tex_coords: false,
+        gregory: false,
+        exact_normals: false,
     }
 }
 
@@ -206,6 +228,9 @@ impl Session {
         }
         if plan.desc.method == SurfaceMethod::Uniform && cage.is_displaced() {
             bail!("{}: method uniform draws the limit surface: expected no displacement map", named());
+        }
+        if plan.desc.method == SurfaceMethod::Gregory {
+            check_gregory(cage, plan).with_context(named)?;
         }
         let made = preprocess(&cage.meshes(), &plan.desc).with_context(named)?;
         let mut surface = Surface::new(device, &cage.meshes(), &plan.objects, plan.desc, made).with_context(named)?;

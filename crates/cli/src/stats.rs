@@ -106,6 +106,10 @@ pub struct PatchStats {
     pub regular: u64,
     pub transition: u64,
     pub quad: u64,
+    /// Gregory patches of 20 points.
+    pub gregory_quad: u64,
+    /// Gregory triangles, of 15.
+    pub gregory_triangle: u64,
     /// How many of the quads are as large as they are only because refinement had to end.
     pub truncated: u64,
 }
@@ -158,9 +162,11 @@ impl FrameStats {
             counts[level_count - 1].filling = tables.filling.len() as u32;
         }
         let sum = |of: fn(&PatchCounts) -> u32| counts.iter().map(|level| u64::from(of(level))).sum();
+        // No refinement had to end: there is none.
+        let is_gregory = session.surface.desc().method == SurfaceMethod::Gregory;
         let transition = sum(|level| level.transition);
         // Levels that no patch is of are not told, but level 0 is.
-        let count = |c: &PatchCounts| u64::from(c.regular) + u64::from(c.transition) + u64::from(c.filling);
+        let count = |c: &PatchCounts| u64::from(c.total());
         let used = counts.iter().rposition(|level| count(level) > 0).map_or(1, |level| level + 1);
         Self {
             frame,
@@ -168,7 +174,9 @@ impl FrameStats {
                 regular: sum(|level| level.regular),
                 transition,
                 quad: sum(|level| level.filling),
-                truncated: u64::from(drawn.status.counts.truncated),
+                gregory_quad: sum(|level| level.gregory),
+                gregory_triangle: sum(|level| level.triangle),
+                truncated: if is_gregory { 0 } else { u64::from(drawn.status.counts.truncated) },
             },
             subpatches: transition,
             patches_by_level: counts[..used].iter().map(count).collect(),
@@ -226,6 +234,7 @@ pub fn method_name(method: SurfaceMethod) -> &'static str {
     match method {
         SurfaceMethod::Fas => "fas",
         SurfaceMethod::Dfas => "dfas",
+        SurfaceMethod::Gregory => "gregory",
         SurfaceMethod::Uniform => "uniform",
     }
 }

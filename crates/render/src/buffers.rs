@@ -4,13 +4,13 @@ use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, DrawArguments, Encoder
 use planish_shaders as shaders;
 use planish_shaders::{DrawEntry, DrawHead, FrameCounts, FrameData, FrameInput, ListHead, ListItem, Object, SceneData};
 use planish_subdiv::patch::{FillingQuad, PatchInfo, RegularPatch};
-use planish_subdiv::tables::{Border, IndexLists, IrregularFace, PatchSeams, Tables};
+use planish_subdiv::tables::{Border, GregoryFace, GregoryKind, IndexLists, IrregularFace, PatchSeams, Spoke, Tables};
 use planish_subdiv::topology::NONE;
 
 use crate::displacement::limit_seats;
 use crate::edit_points::targets;
 use crate::error::Error;
-use crate::lists::{Capacities, LIST_COUNT, LIST_PHASES, Phases};
+use crate::lists::{Capacities, KIND_COUNT, LIST_COUNT, LIST_PHASES, Phases};
 use crate::marks::Marks;
 use crate::objects::ObjectSizes;
 use crate::options::SurfaceMethod;
@@ -29,6 +29,11 @@ pub(crate) struct TableBuffers {
     pub seams: Buffer,
     pub limit_seats: Buffer,
     pub irregular: Buffer,
+    pub gregory: Buffer,
+    pub spoke_ranges: Buffer,
+    pub spokes: Buffer,
+    pub spoke_indices: Buffer,
+    pub spoke_weights: Buffer,
     pub quads: Buffer,
     pub ptex_faces: Buffer,
     pub neighbours: [Buffer; 2],
@@ -54,6 +59,11 @@ impl TableBuffers {
             limit_seats: table(device, "limit seats", &limit_seats(tables))?,
             seams: table(device, "seams", &tables.seams.iter().map(seams).collect::<Vec<_>>())?,
             irregular: table(device, "irregular faces", &tables.irregular.iter().map(irregular).collect::<Vec<_>>())?,
+            gregory: table(device, "Gregory faces", &tables.gregory.faces.iter().map(gregory).collect::<Vec<_>>())?,
+            spoke_ranges: table(device, "spoke ranges", &tables.gregory.of_limit)?,
+            spokes: table(device, "spokes", &tables.gregory.spokes.iter().map(spoke).collect::<Vec<_>>())?,
+            spoke_indices: table(device, "spoke indices", &tables.gregory.indices)?,
+            spoke_weights: table(device, "spoke weights", &tables.gregory.weights)?,
             quads: table(device, "filling quads", &tables.filling.iter().map(quad).collect::<Vec<_>>())?,
             ptex_faces: table(device, "Ptex faces", &tables.ptex_faces)?,
             neighbours: lists(device, "neighbours", &tables.slots.neighbours)?,
@@ -77,6 +87,11 @@ impl TableBuffers {
             &self.seams,
             &self.limit_seats,
             &self.irregular,
+            &self.gregory,
+            &self.spoke_ranges,
+            &self.spokes,
+            &self.spoke_indices,
+            &self.spoke_weights,
             &self.quads,
             &self.ptex_faces,
             &self.density_scales,
@@ -98,6 +113,7 @@ pub(crate) struct FrameBuffers {
     pub points: Buffer,
     pub limits: Buffer,
     pub limit_tangents: Buffer,
+    pub spoke_points: Buffer,
     pub densities: Buffer,
     pub split_edges: Buffer,
     pub star_marks: Buffer,
@@ -117,6 +133,7 @@ impl FrameBuffers {
     ) -> Result<Self, Error> {
         let object_buffer = mapped::<Object>(device, "objects", objects.len() as u32)?;
         object_buffer.write(0, objects)?;
+        let tangent_count = tables.limit_seats.len().max(tables.gregory.of_limit.len());
         let all_rows: Vec<u32> = Phases::new(tables).rows.iter().flat_map(|&[first, n]| first..first + n).collect();
         Ok(Self {
             scene: mapped::<SceneData>(device, "scene", 1)?,
@@ -127,7 +144,8 @@ impl FrameBuffers {
             edit_offsets: mapped::<shaders::Points>(device, "edit offsets", tables.edits.len() as u32)?,
             points: array::<shaders::Points>(device, "points", tables.point_count())?,
             limits: array::<shaders::LimitPoint>(device, "limit points", tables.limit_point_count())?,
-            limit_tangents: array::<shaders::LimitTangents>(device, "limit tangents", tables.limit_seats.len() as u32)?,
+            limit_tangents: array::<shaders::LimitTangents>(device, "limit tangents", tangent_count as u32)?,
+            spoke_points: array::<shaders::SpokePoint>(device, "spoke points", tables.gregory.spokes.len() as u32)?,
             densities: array::<shaders::SlotDensity>(device, "densities", sizes.slots)?,
             split_edges: array::<u32>(device, "split edges", sizes.edges.div_ceil(32))?,
             star_marks: array::<u32>(device, "star marks", tables.stars.count().div_ceil(32))?,
@@ -139,7 +157,7 @@ impl FrameBuffers {
         })
     }
 
-    pub fn all(&self) -> [&Buffer; 16] {
+    pub fn all(&self) -> [&Buffer; 17] {
         [
             &self.scene,
             &self.input,
@@ -150,6 +168,7 @@ impl FrameBuffers {
             &self.points,
             &self.limits,
             &self.limit_tangents,
+            &self.spoke_points,
             &self.densities,
             &self.split_edges,
             &self.star_marks,
@@ -165,8 +184,8 @@ impl FrameBuffers {
 pub(crate) struct ListBuffers {
     pub chunks: Buffer,
     pub active: Buffer,
-    /// Patches of finer levels, leaves, patches that are cut.
-    pub items: [Buffer; 3],
+    /// Patches of finer levels, leaves, patches that are cut, Gregory patches that are.
+    pub items: [Buffer; 4],
     pub entries: Buffer,
     pub draws: Buffer,
     pub heads: Buffer,
@@ -194,7 +213,7 @@ impl ListBuffers {
             }
         }
         let sum = |counts: &[u32]| counts.iter().sum::<u32>();
-        let [patches, leaves, cut] = capacities.items;
+        let [patches, leaves, cut, cut_gregory] = capacities.items;
         Ok(Self {
             chunks: array::<ListItem>(device, "chunks", sum(&capacities.chunks))?,
             active: array::<ListItem>(device, "active faces", sum(&capacities.active))?,
@@ -202,15 +221,16 @@ impl ListBuffers {
                 array::<ListItem>(device, "patch items", patches)?,
                 array::<ListItem>(device, "leaf items", leaves)?,
                 array::<ListItem>(device, "cut items", cut)?,
+                array::<ListItem>(device, "cut Gregory items", cut_gregory)?,
             ],
             entries: array::<DrawEntry>(device, "draw lists", sum(&capacities.entries))?,
             draws: array::<DrawArguments>(device, "draws", sum(&capacities.draws))?,
             heads: array::<ListHead>(device, "list heads", LIST_COUNT as u32)?,
             empty_heads: table(device, "empty list heads", &heads)?,
             heads_read: read_back::<ListHead>(device, "list heads", LIST_COUNT)?,
-            draw_heads: array::<DrawHead>(device, "draw heads", 4)?,
+            draw_heads: array::<DrawHead>(device, "draw heads", KIND_COUNT as u32)?,
             empty_draw_heads: table(device, "empty draw heads", &capacities.draw_heads())?,
-            draw_heads_read: read_back::<DrawHead>(device, "draw heads", 4)?,
+            draw_heads_read: read_back::<DrawHead>(device, "draw heads", KIND_COUNT)?,
         })
     }
 
@@ -248,13 +268,11 @@ fn lists(device: &Device, name: &str, lists: &IndexLists) -> Result<[Buffer; 2],
 }
 
 fn rows(rows: &[planish_subdiv::stencil::StencilRow]) -> Vec<shaders::StencilRow> {
-    rows.iter()
-        .map(|row| shaders::StencilRow {
-            first_index: row.first_index,
-            first_weight: row.first_weight,
-            count: row.count,
-        })
-        .collect()
+    rows.iter().map(row).collect()
+}
+
+fn row(row: &planish_subdiv::stencil::StencilRow) -> shaders::StencilRow {
+    shaders::StencilRow { first_index: row.first_index, first_weight: row.first_weight, count: row.count }
 }
 
 fn info(info: &PatchInfo) -> shaders::PatchInfo {
@@ -286,6 +304,37 @@ fn irregular(face: &IrregularFace) -> shaders::IrregularFace {
         midpoints: face.midpoints,
         // FACE_FORCED, FACE_HIDDEN and FACE_STAR_LIMITS_SHIFT.
         flags: u32::from(face.is_forced) | u32::from(face.is_hidden) << 1 | u32::from(face.star_limits) << 2,
+    }
+}
+
+/// GREGORY_.. of `glsl/shared/tables.glsl`.
+fn gregory(face: &GregoryFace) -> shaders::GregoryFace {
+    let kind = match face.kind {
+        GregoryKind::None => 0,
+        GregoryKind::Quad => 1,
+        GregoryKind::PartOfNgon => 2,
+        GregoryKind::PartOfTriangle(part) => 3 + u32::from(part),
+    };
+    shaders::GregoryFace {
+        limits: face.limits,
+        first: face.first,
+        last: face.last,
+        cosines: face.cosines,
+        borders: face.borders.map(|border| border.map_or(NONE, Border::pack)),
+        flags: kind | u32::from(face.sharp) << 4,
+    }
+}
+
+fn spoke(spoke: &Spoke) -> shaders::Spoke {
+    let [before, after] = spoke.neighbours;
+    shaders::Spoke {
+        along: spoke.along,
+        direct: spoke.direct,
+        end: spoke.end,
+        is_projected: u32::from(spoke.is_projected),
+        before,
+        after,
+        row: row(&spoke.row),
     }
 }
 

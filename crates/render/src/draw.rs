@@ -62,6 +62,7 @@ impl DrawPasses {
             watertight: needs.watertight,
             displaced: needs.displaced,
             tex_coords: false,
+            exact_normals: needs.exact_normals,
         };
         let wire = PipelineOptions { wire: true, ..fill };
         Ok(Self {

@@ -74,6 +74,7 @@ impl DumpPasses {
             watertight: needs.watertight,
             displaced: needs.displaced,
             tex_coords: needs.tex_coords,
+            exact_normals: needs.exact_normals,
         };
         let buffer = |name, kind, size| Buffer::new(device, &BufferDesc { name, kind, size });
         Ok(Self {
@@ -139,10 +140,7 @@ impl DumpPasses {
 
 /// How many triangles a dump of what the frame that was submitted last listed has; waits for the device.
 pub fn listed_triangle_count(device: &Device, surface: &Surface) -> Result<u64, Error> {
-    let kinds: &[PatchKind] = match surface.desc.method {
-        SurfaceMethod::Uniform => &[PatchKind::Filling],
-        SurfaceMethod::Fas | SurfaceMethod::Dfas => &PatchKind::ALL,
-    };
+    let kinds = PatchKind::of_method(surface.desc.method);
     kinds.iter().map(|&kind| Ok(triangles_of(device, surface, kind)?.1.iter().sum::<u64>())).sum()
 }
 

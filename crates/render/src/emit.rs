@@ -12,7 +12,7 @@ use planish_subdiv::topology::NONE;
 use crate::camera::FrameCamera;
 use crate::error::Error;
 use crate::factors::{Grain, PatchFactors, triangle_count};
-use crate::lists::{CHUNK, LIST_BASE, LIST_CUT, LIST_LEAVES, LIST_PATCHES, PatchKind};
+use crate::lists::{CHUNK, KIND_COUNT, LIST_BASE, LIST_CUT, LIST_CUT_GREGORY, LIST_LEAVES, LIST_PATCHES, PatchKind};
 use crate::objects::to_world;
 use crate::options::{Culling, FrameNeeds, Spacing};
 use crate::program::{compute_pipeline, specialized_compute_pipeline};
@@ -30,6 +30,7 @@ pub(crate) struct Emit {
     patches: ComputePipeline,
     leaves: ComputePipeline,
     cut: Option<ComputePipeline>,
+    cut_gregory: Option<ComputePipeline>,
     finish: ComputePipeline,
 }
 
@@ -46,8 +47,17 @@ impl Emit {
         let pipeline = |module| specialized_compute_pipeline(device, module, CHUNK, &spec);
         Ok(Self {
             patches: pipeline(&shaders::emit_patches_comp::PROGRAM)?,
-            leaves: pipeline(&shaders::emit_leaves_comp::PROGRAM)?,
+            leaves: pipeline(if needs.gregory {
+                &shaders::emit_gregory_comp::PROGRAM
+            } else {
+                &shaders::emit_leaves_comp::PROGRAM
+            })?,
             cut: if needs.cuts { Some(pipeline(&shaders::emit_cut_comp::PROGRAM)?) } else { None },
+            cut_gregory: if needs.cuts && needs.gregory {
+                Some(pipeline(&shaders::emit_gregory_cut_comp::PROGRAM)?)
+            } else {
+                None
+            },
             finish: compute_pipeline(device, &shaders::finish_lists_comp::PROGRAM)?,
         })
     }
@@ -62,6 +72,9 @@ impl Emit {
         encoder.compute_indirect_more(&self.leaves, &push(LIST_LEAVES), heads, head_offset(LIST_LEAVES));
         if let Some(cut) = &self.cut {
             encoder.compute_indirect(cut, &push(LIST_CUT), heads, head_offset(LIST_CUT));
+        }
+        if let Some(cut) = &self.cut_gregory {
+            encoder.compute_indirect_more(cut, &push(LIST_CUT_GREGORY), heads, head_offset(LIST_CUT_GREGORY));
         }
         let push = shaders::finish_lists_comp::Push { heads: address(&surface.lists.draw_heads) };
         encoder.compute(&self.finish, &push, CHUNK);
@@ -91,7 +104,7 @@ pub fn emit_view(camera: &FrameCamera, culling: Culling, sub_pixel_bits: u32) ->
 }
 
 /// What the stage makes of one object: entries of each kind, ascending.
-pub type Emitted = [Vec<DrawEntry>; 4];
+pub type Emitted = [Vec<DrawEntry>; KIND_COUNT];
 
 /// What the twin needs to know of an object.
 pub struct EmitInput<'a> {

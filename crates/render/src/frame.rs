@@ -11,6 +11,7 @@ use crate::limit::Limit;
 use crate::lists::PatchKind;
 use crate::options::{FrameNeeds, SurfaceMethod};
 use crate::select::Select;
+use crate::spokes::SpokeStage;
 use crate::subdivide::Subdivide;
 use crate::surface::Surface;
 use crate::upload::address;
@@ -20,6 +21,7 @@ pub struct FrameStages {
     select: Select,
     subdivide: Subdivide,
     limit: Limit,
+    spokes: Option<SpokeStage>,
     emit: Emit,
 }
 
@@ -30,6 +32,7 @@ impl FrameStages {
             select: Select::new(device, needs)?,
             subdivide: Subdivide::new(device)?,
             limit: Limit::new(device, needs)?,
+            spokes: needs.gregory.then(|| SpokeStage::new(device)).transpose()?,
             emit: Emit::new(device, needs)?,
         })
     }
@@ -48,6 +51,9 @@ impl FrameStages {
         self.subdivide.record(encoder, surface);
         encoder.timestamp("subdivide");
         self.limit.record(encoder, surface);
+        if let Some(spokes) = &self.spokes {
+            spokes.record(encoder, surface);
+        }
         encoder.timestamp("limit");
         if is_selected {
             self.emit.record(encoder, surface);
@@ -74,6 +80,9 @@ pub(crate) fn draw_push(surface: &Surface, kind: PatchKind, first_entry: u32, ca
     let (points, patches, first_patch_id) = match (surface.desc.method, kind) {
         (SurfaceMethod::Uniform, _) => (&frame.limits, &tables.quads, 0),
         (_, PatchKind::Filling) => (&frame.limits, &tables.irregular, surface.tables.patches.len() as u32),
+        (_, PatchKind::Gregory | PatchKind::GregoryCut | PatchKind::Triangle | PatchKind::TriangleCut) => {
+            (&frame.points, &tables.patches, surface.tables.patches.len() as u32)
+        }
         _ => (&frame.points, &tables.patches, 0),
     };
     DrawPush {

@@ -24,6 +24,7 @@ pub mod options;
 mod pipelines;
 mod program;
 mod select;
+pub mod spokes;
 pub mod subdivide;
 mod surface;
 mod targets;

@@ -22,11 +22,47 @@ pub enum PatchKind {
     Filling,
     /// Pieces of regular and transition patches that need more segments than the tessellator makes.
     Cut,
+    /// Gregory patches of 20 points.
+    Gregory,
+    /// Pieces of them.
+    GregoryCut,
+    /// Thirds of Gregory triangles of 15 points.
+    Triangle,
+    /// Pieces of those.
+    TriangleCut,
 }
+
+/// Number of kinds: `DRAW_COUNT` of the shaders.
+pub const KIND_COUNT: usize = 8;
 
 impl PatchKind {
     /// All kinds.
-    pub const ALL: [Self; 4] = [Self::Regular, Self::Transition, Self::Filling, Self::Cut];
+    pub const ALL: [Self; KIND_COUNT] = [
+        Self::Regular,
+        Self::Transition,
+        Self::Filling,
+        Self::Cut,
+        Self::Gregory,
+        Self::GregoryCut,
+        Self::Triangle,
+        Self::TriangleCut,
+    ];
+
+    /// Whether it is a piece of a patch.
+    pub fn is_cut(self) -> bool {
+        matches!(self, Self::Cut | Self::GregoryCut | Self::TriangleCut)
+    }
+
+    /// The kinds that a method draws.
+    pub fn of_method(method: SurfaceMethod) -> &'static [Self] {
+        match method {
+            SurfaceMethod::Dfas | SurfaceMethod::Fas => &Self::ALL[..=Self::Cut as usize],
+            SurfaceMethod::Gregory => {
+                &[Self::Regular, Self::Cut, Self::Gregory, Self::GregoryCut, Self::Triangle, Self::TriangleCut]
+            }
+            SurfaceMethod::Uniform => &[Self::Filling],
+        }
+    }
 }
 
 /// Levels that a patch can have; `LEVEL_COUNT` of the shaders.
@@ -45,8 +81,10 @@ pub const LIST_PATCHES: usize = 4;
 pub const LIST_LEAVES: usize = 5;
 /// Patches that are cut.
 pub const LIST_CUT: usize = 6;
+/// Gregory patches that are cut.
+pub const LIST_CUT_GREGORY: usize = 7;
 /// Irregular faces of a level to select from; + level.
-pub const LIST_ACTIVE: usize = 7;
+pub const LIST_ACTIVE: usize = 8;
 /// Rows in use; + phase. The last phase is that of limit points.
 pub const LIST_PHASES: usize = LIST_ACTIVE + LEVEL_COUNT;
 const MAX_PHASES: usize = 2 * LEVEL_COUNT + 1;
@@ -65,12 +103,12 @@ pub struct Capacities {
     pub chunks: [u32; 4],
     /// Active faces of each level.
     pub active: [u32; LEVEL_COUNT],
-    /// Patches of finer levels, leaves, and patches that are cut.
-    pub items: [u32; 3],
+    /// Patches of finer levels, leaves, patches that are cut, and Gregory patches that are.
+    pub items: [u32; 4],
     /// Patches to draw of each kind.
-    pub entries: [u32; 4],
+    pub entries: [u32; KIND_COUNT],
     /// Draws of each kind: on a software driver there may be one an entry.
-    pub draws: [u32; 4],
+    pub draws: [u32; KIND_COUNT],
     /// What they can hold at most; none if this is it. Pieces of cut patches have no bound.
     worst: Option<Box<Capacities>>,
 }
@@ -79,11 +117,15 @@ impl Capacities {
     /// For these objects; `largest` is the most entries that a list begins with.
     pub fn new(objects: &[ObjectDesc], meshes: &[MeshRanges], is_software: bool, largest: Option<u32>) -> Self {
         let largest = largest.unwrap_or(FIRST_CAPACITY);
+        let has_gregory = objects.iter().any(|object| !meshes[object.mesh].spokes.is_empty());
         let mut worst = Self::bounded(objects, meshes, is_software, u32::MAX / 4);
         let mut capacities = Self::bounded(objects, meshes, is_software, largest);
         for lists in [&mut worst, &mut capacities] {
-            lists.entries[PatchKind::Cut as usize] = largest;
-            lists.draws[PatchKind::Cut as usize] = if is_software { largest } else { 0 };
+            for kind in PatchKind::ALL.into_iter().filter(|kind| kind.is_cut()) {
+                let first = if kind == PatchKind::Cut || has_gregory { largest } else { 0 };
+                lists.entries[kind as usize] = first;
+                lists.draws[kind as usize] = if is_software { first } else { 0 };
+            }
         }
         capacities.worst = Some(Box::new(worst));
         capacities
@@ -102,13 +144,20 @@ impl Capacities {
         ];
         let patches = worst(&|mesh| all(&mesh.patches));
         let leaves = worst(&|mesh| all(&mesh.irregular));
-        let entries = [patches, patches, leaves, 0];
+        let gregory = worst(&|mesh| if mesh.spokes.is_empty() { 0 } else { all(&mesh.irregular) });
+        let filling = if gregory == 0 { leaves } else { 0 };
+        let entries = [patches, patches, filling, 0, gregory, 0, gregory, 0];
         Self {
             chunks: chunk_counts.map(|of| sum(of) as u32),
             active: std::array::from_fn(|level| {
                 worst(&|mesh| mesh.irregular.get(level).map_or(0, |range| range.len() as u64))
             }),
-            items: [worst(&|mesh| all(&mesh.patches[1..])), leaves, patches.min(1 << 12).min(largest)],
+            items: [
+                worst(&|mesh| all(&mesh.patches[1..])),
+                leaves,
+                patches.min(1 << 12).min(largest),
+                gregory.min(1 << 12).min(largest),
+            ],
             entries,
             draws: entries.map(|count| if is_software { count } else { 0 }),
             worst: None,
@@ -125,10 +174,11 @@ impl Capacities {
             || status.heads[LIST_LEAVES].count > self.items[1];
         let mut grown = self.clone();
         if let Some(worst) = self.worst.as_ref().filter(|_| has_lost_faces) {
-            let (entries, draws) = (self.entries[PatchKind::Cut as usize], self.draws[PatchKind::Cut as usize]);
             grown = Self { worst: self.worst.clone(), ..(**worst).clone() };
-            grown.entries[PatchKind::Cut as usize] = entries;
-            grown.draws[PatchKind::Cut as usize] = draws;
+            for kind in PatchKind::ALL.into_iter().filter(|kind| kind.is_cut()) {
+                grown.entries[kind as usize] = self.entries[kind as usize];
+                grown.draws[kind as usize] = self.draws[kind as usize];
+            }
         }
         let grow = |capacity: &mut u32, needed: u32| {
             if needed > *capacity {
@@ -139,7 +189,7 @@ impl Capacities {
         for (level, capacity) in grown.active.iter_mut().enumerate().skip(1) {
             grow(capacity, status.heads[LIST_ACTIVE + level].count);
         }
-        for (capacity, list) in grown.items.iter_mut().zip([LIST_PATCHES, LIST_LEAVES, LIST_CUT]) {
+        for (capacity, list) in grown.items.iter_mut().zip([LIST_PATCHES, LIST_LEAVES, LIST_CUT, LIST_CUT_GREGORY]) {
             grow(capacity, status.heads[list].count);
         }
         for (kind, head) in status.draw_heads.iter().enumerate() {
@@ -171,7 +221,7 @@ impl Capacities {
     }
 
     /// The heads of empty draw lists.
-    pub(crate) fn draw_heads(&self) -> [DrawHead; 4] {
+    pub(crate) fn draw_heads(&self) -> [DrawHead; KIND_COUNT] {
         let (first, first_draw) = (first_of(&self.entries), first_of(&self.draws));
         std::array::from_fn(|kind| DrawHead {
             capacity: self.entries[kind],
@@ -198,7 +248,7 @@ pub struct Status {
     /// Heads of all lists.
     pub heads: Vec<ListHead>,
     /// Heads of the draw lists.
-    pub draw_heads: [DrawHead; 4],
+    pub draw_heads: [DrawHead; KIND_COUNT],
     /// Patches drawn, and the largest density.
     pub counts: FrameCounts,
 }
@@ -210,6 +260,8 @@ impl Status {
             regular: self.counts.regular[level],
             transition: self.counts.transition[level],
             filling: self.counts.filling[level],
+            gregory: self.counts.gregory[level],
+            triangle: self.counts.triangle[level],
         };
         (0..level_count).map(of_level).collect()
     }

@@ -100,7 +100,9 @@ pub(crate) struct MeshFacts {
 impl MeshFacts {
     pub fn new(mesh: &ControlMesh, ranges: &MeshRanges) -> Self {
         // Chaikin's rule has weights below 0, and edits move points anywhere.
-        let in_hull = mesh.edits.is_empty() && mesh.options.creasing == planish_subdiv::mesh::Creasing::Uniform;
+        // Gregory patches may leave the hull too.
+        let has_hull = mesh.edits.is_empty() && mesh.options.creasing == planish_subdiv::mesh::Creasing::Uniform;
+        let in_hull = has_hull && ranges.spokes.is_empty();
         let linear_tex_coords = mesh.options.face_varying == FaceVaryingInterpolation::All;
         Self {
             cage: CageFacts::of_mesh(mesh),

@@ -8,6 +8,8 @@ pub enum SurfaceMethod {
     Dfas,
     /// Static feature-adaptive subdivision: every irregularity to one depth (FAS). The same kernels with a constant selection.
     Fas,
+    /// One Gregory patch for each irregular face of the cage (Loop et al. 2009): an approximation.
+    Gregory,
     /// Global table-driven refinement drawn as triangles: the baseline of FAS section 8.1.
     Uniform,
 }
@@ -90,13 +92,27 @@ pub struct FrameNeeds {
     pub displaced: bool,
     /// Dumps have texture coordinates.
     pub tex_coords: bool,
+    /// Irregular faces are Gregory patches ([`SurfaceMethod::Gregory`]).
+    pub gregory: bool,
+    /// Their normals are those of the rational patches, not of their Bezier form.
+    pub exact_normals: bool,
 }
 
 impl FrameNeeds {
     /// All that limit surfaces may need.
     pub fn all(spacing: Spacing) -> Self {
-        let (displaced, tex_coords) = (false, false);
-        Self { spacing, culls: true, placed: true, cuts: true, watertight: true, displaced, tex_coords }
+        let (displaced, tex_coords, gregory, exact_normals) = (false, false, false, false);
+        Self {
+            spacing,
+            culls: true,
+            placed: true,
+            cuts: true,
+            watertight: true,
+            displaced,
+            tex_coords,
+            gregory,
+            exact_normals,
+        }
     }
 }
 
@@ -135,10 +151,12 @@ pub enum View {
 
 impl View {
     /// Value of the fragment shader's specialization constant `VIEW`.
-    pub fn constant(self) -> u32 {
+    pub fn constant(self, method: SurfaceMethod) -> u32 {
         match self {
             Self::Shaded | Self::Wire => 0,
             Self::Normal => 1,
+            // In the colours of the Gregory paper.
+            Self::Patch if method == SurfaceMethod::Gregory => 6,
             Self::Patch => 2,
             Self::Level => 3,
             Self::Tess => 4,

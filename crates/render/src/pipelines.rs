@@ -44,6 +44,8 @@ pub(crate) struct PipelineOptions {
     pub displaced: bool,
     /// Texture coordinates are asked for.
     pub tex_coords: bool,
+    /// Gregory patches have the normals of the rational patch.
+    pub exact_normals: bool,
 }
 
 /// The pipeline of each kind of patch that the method has.
@@ -51,12 +53,8 @@ pub(crate) fn pipelines(
     device: &Device,
     options: &PipelineOptions,
 ) -> Result<Vec<(PatchKind, GraphicsPipeline)>, Error> {
-    let kinds: &[PatchKind] = match options.method {
-        SurfaceMethod::Dfas | SurfaceMethod::Fas if options.cuts => &PatchKind::ALL,
-        SurfaceMethod::Dfas | SurfaceMethod::Fas => &PatchKind::ALL[..PatchKind::Cut as usize],
-        SurfaceMethod::Uniform => &[PatchKind::Filling],
-    };
-    kinds.iter().map(|&kind| Ok((kind, pipeline(device, options, kind)?))).collect()
+    let kinds = PatchKind::of_method(options.method).iter().filter(|kind| options.cuts || !kind.is_cut());
+    kinds.map(|&kind| Ok((kind, pipeline(device, options, kind)?))).collect()
 }
 
 fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Result<GraphicsPipeline, Error> {
@@ -71,16 +69,26 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
         SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_WATERTIGHT, bits: u32::from(options.watertight) },
         SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_DISPLACED, bits: u32::from(options.displaced) },
         SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_TEX_COORDS, bits: u32::from(options.tex_coords) },
-        SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_CUT, bits: u32::from(kind == PatchKind::Cut) },
+        SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_CUT, bits: u32::from(kind.is_cut()) },
+        SpecConstant {
+            id: shaders::gregory_patch_lean_tese::SPEC_TRIANGLE,
+            bits: u32::from(matches!(kind, PatchKind::Triangle | PatchKind::TriangleCut)),
+        },
+        SpecConstant {
+            id: shaders::gregory_patch_lean_tese::SPEC_EXACT_NORMALS,
+            bits: u32::from(options.exact_normals),
+        },
     ];
-    let view_constant = [SpecConstant { id: shaders::surface_lean_frag::SPEC_VIEW, bits: options.view.constant() }];
+    let view_constant =
+        [SpecConstant { id: shaders::surface_lean_frag::SPEC_VIEW, bits: options.view.constant(options.method) }];
     let geometry = geometry_stages(options, kind);
     let used: Vec<Vec<SpecConstant>> = geometry
         .iter()
         .map(|module| {
             let knows = |constant: &&SpecConstant| module.spec_constants.iter().any(|known| known.id == constant.id);
-            let is_patch =
-                ["bspline_patch", "filling_quad", "uniform_quad"].iter().any(|stem| module.name.starts_with(stem));
+            let is_patch = ["bspline_patch", "filling_quad", "gregory_patch", "uniform_quad"]
+                .iter()
+                .any(|stem| module.name.starts_with(stem));
             patch_constants.iter().filter(|_| is_patch).filter(knows).copied().collect()
         })
         .collect();
@@ -103,8 +111,8 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
             stages: &stages,
             push_size: size_of::<DrawPush>() as u32,
             topology: match options.method {
-                SurfaceMethod::Dfas | SurfaceMethod::Fas => Topology::Patches { control_points: 1 },
                 SurfaceMethod::Uniform => Topology::Triangles,
+                _ => Topology::Patches { control_points: 1 },
             },
             color_formats: if is_dump { &[] } else { &formats },
             depth_format: (!is_dump).then_some(DEPTH_FORMAT),
@@ -134,6 +142,14 @@ fn geometry_stages(options: &PipelineOptions, kind: PatchKind) -> Vec<&'static S
         )];
     }
     let list = &shaders::patch_list_vert::PROGRAM;
+    if matches!(kind, PatchKind::Gregory | PatchKind::GregoryCut | PatchKind::Triangle | PatchKind::TriangleCut) {
+        let evaluation = pick(
+            &shaders::gregory_patch_lean_tese::PROGRAM,
+            &shaders::gregory_patch_layers_tese::PROGRAM,
+            &shaders::gregory_patch_dump_tese::PROGRAM,
+        );
+        return vec![list, &shaders::gregory_patch_tesc::PROGRAM, evaluation];
+    }
     if kind != PatchKind::Filling {
         let evaluation = pick(
             &shaders::bspline_patch_lean_tese::PROGRAM,
@@ -157,5 +173,9 @@ fn pass_name(options: &PipelineOptions, kind: PatchKind) -> &'static str {
         (_, PatchKind::Transition) => "transition patches",
         (_, PatchKind::Filling) => "filling quads",
         (_, PatchKind::Cut) => "cut patches",
+        (_, PatchKind::Gregory) => "Gregory quads",
+        (_, PatchKind::GregoryCut) => "cut Gregory quads",
+        (_, PatchKind::Triangle) => "Gregory triangles",
+        (_, PatchKind::TriangleCut) => "cut Gregory triangles",
     }
 }

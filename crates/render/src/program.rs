@@ -11,14 +11,17 @@ pub(crate) fn compute_pipeline(device: &Device, module: &ShaderModule) -> Result
     specialized_compute_pipeline(device, module, module.local_size.map_or(1, |size| size[0]), &[])
 }
 
-/// A compute pipeline that knows whether objects are displaced.
+/// A compute pipeline that knows whether objects are displaced, and whether faces are Gregory patches.
 pub(crate) fn displaced_compute_pipeline(
     device: &Device,
     module: &ShaderModule,
     needs: &FrameNeeds,
 ) -> Result<ComputePipeline, Error> {
     let displaced = SpecConstant { id: planish_shaders::limit_comp::SPEC_DISPLACED, bits: u32::from(needs.displaced) };
-    specialized_compute_pipeline(device, module, module.local_size.map_or(1, |size| size[0]), &[displaced])
+    let gregory = SpecConstant { id: planish_shaders::limit_comp::SPEC_GREGORY, bits: u32::from(needs.gregory) };
+    let knows = |constant: &SpecConstant| module.spec_constants.iter().any(|known| known.id == constant.id);
+    let spec: Vec<SpecConstant> = [displaced, gregory].into_iter().filter(knows).collect();
+    specialized_compute_pipeline(device, module, module.local_size.map_or(1, |size| size[0]), &spec)
 }
 
 /// A compute pipeline whose groups have this many threads by these specialization constants.

@@ -82,6 +82,7 @@ pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preproc
         uniform: desc.method == SurfaceMethod::Uniform,
         crease_patches: desc.crease_patches,
         displaced: desc.displaced,
+        gregory: desc.method == SurfaceMethod::Gregory,
         ignores_channels: !desc.displaced,
     };
     let mut times = PreprocessTimes::default();
@@ -286,6 +287,8 @@ impl Surface {
             patches: address(&tables.patches),
             seams: address(&tables.seams),
             irregular: address(&tables.irregular),
+            gregory: address(&tables.gregory),
+            spokes: address(&frame.spoke_points),
             ptex_faces: address(&tables.ptex_faces),
             neighbour_first: address(&tables.neighbours[0]),
             neighbours: address(&tables.neighbours[1]),
@@ -314,6 +317,7 @@ impl Surface {
             patch_items: address(&lists.items[0]),
             leaf_items: address(&lists.items[1]),
             cut_items: address(&lists.items[2]),
+            cut_gregory_items: address(&lists.items[3]),
             heads: address(&lists.heads),
             draw_heads: address(&lists.draw_heads),
             entries: address(&lists.entries),
@@ -378,7 +382,7 @@ impl Surface {
     /// What the last frame that was waited for left in its lists.
     pub fn status(&self) -> Result<Status, Error> {
         let counts: Vec<FrameCounts> = self.frame.counts_read.read(0, 1)?;
-        let draw_heads: Vec<DrawHead> = self.lists.draw_heads_read.read(0, 4)?;
+        let draw_heads: Vec<DrawHead> = self.lists.draw_heads_read.read(0, crate::lists::KIND_COUNT)?;
         Ok(Status {
             heads: self.lists.heads_read.read::<ListHead>(0, crate::lists::LIST_COUNT)?,
             draw_heads: std::array::from_fn(|kind| draw_heads[kind]),

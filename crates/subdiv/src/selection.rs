@@ -21,6 +21,17 @@ pub struct PatchCounts {
     pub transition: u32,
     /// Patch-filling quads.
     pub filling: u32,
+    /// Gregory patches of 20 points.
+    pub gregory: u32,
+    /// Gregory triangles.
+    pub triangle: u32,
+}
+
+impl PatchCounts {
+    /// Patches of all kinds.
+    pub fn total(&self) -> u32 {
+        self.regular + self.transition + self.filling + self.gregory + self.triangle
+    }
 }
 
 /// What decides whether an irregular face is refined, apart from `max_level` and what is forced.

@@ -34,7 +34,9 @@ pub struct Measured {
 impl Measured {
     /// Number of patches of all kinds.
     pub fn patch_count(&self) -> u64 {
-        self.patches.regular + self.patches.transition + self.patches.quad
+        let patches = &self.patches;
+        let gregory = patches.gregory_quad + patches.gregory_triangle;
+        patches.regular + patches.transition + patches.quad + gregory
     }
 }
 
@@ -49,6 +51,7 @@ pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) ->
         needs: FrameNeeds {
             watertight,
             displaced: cage.is_displaced(),
+            gregory: method == SurfaceMethod::Gregory,
             ..frame_needs(arguments.spacing.into(), tess_factor, &objects)
         },
         objects,

@@ -108,6 +108,7 @@ impl Method {
             spacing: arguments.spacing.into(),
             size: arguments.size,
             watertight: !arguments.no_watertight,
+            exact_normals: false,
             options: frame_options(method, Density::EdgePixels(arguments.edge_pixels), false),
         };
         let mut plan = Plan::of(cage, &setting, cameras)?;

@@ -3,6 +3,7 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, DeviceOptions, Encoder, Image, PipelineStatistics};
+use planish_render::lists::KIND_COUNT;
 use planish_render::{
     CapturedVertex, DrawOptions, DrawPasses, DumpPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, PatchKind,
     Spacing, Status, Surface, SurfaceDesc, Targets, View,
@@ -117,7 +118,7 @@ impl Lab {
     }
 
     /// Entries of each kind that the last frame listed, in ascending order.
-    pub fn entries(&self, surface: &Surface) -> [Vec<DrawEntry>; 4] {
+    pub fn entries(&self, surface: &Surface) -> [Vec<DrawEntry>; KIND_COUNT] {
         self.unsorted_entries(surface).map(|mut entries| {
             entries.sort_by_key(|entry| (entry.object, entry.place, entry.flags));
             entries
@@ -125,7 +126,7 @@ impl Lab {
     }
 
     /// Entries of each kind that the last frame listed, in their order.
-    pub fn unsorted_entries(&self, surface: &Surface) -> [Vec<DrawEntry>; 4] {
+    pub fn unsorted_entries(&self, surface: &Surface) -> [Vec<DrawEntry>; KIND_COUNT] {
         surface.status().expect("status").draw_heads.map(|head| {
             let range = head.first..head.first + head.count.min(head.capacity);
             surface.download_entries(&self.device, range).expect("entries")

@@ -101,7 +101,8 @@ impl<'a> LevelFaces<'a> {
         let irregular = &refinement.irregular_faces[k as usize];
         let is_irregular = refinement.flags(k, irregular);
         let is_forced = refinement.flags(k, &refinement.forced_faces[k as usize]);
-        let ends_here = k >= refinement.options.max_level;
+        // Gregory patches have tess factors of their own: no edge is left with one segment.
+        let ends_here = k >= refinement.options.max_level && !refinement.options.gregory;
         let is_end = is_irregular.iter().zip(&is_forced).map(|(&irregular, &forced)| ends_here && irregular && !forced);
         let first_patch = tables.patch_ranges.last().map_or(0, |range| range.end);
         let first_irregular = tables.irregular_ranges.last().map_or(0, |range| range.end);

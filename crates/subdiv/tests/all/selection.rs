@@ -333,12 +333,18 @@ fn an_isolated_vertex_has_the_theorys_counts_at_any_depth() {
             let cut = cut(&tables, &vec![density_of_depth(depth); mesh.positions.len()]);
             let mut expected = vec![PatchCounts::default(); 9];
             if depth == 0 {
-                expected[0] = PatchCounts { regular: 8 * n, transition: 0, filling: n };
+                expected[0] = PatchCounts { regular: 8 * n, transition: 0, filling: n, ..PatchCounts::default() };
             } else {
                 // Nine faces a sector, of which one is refined and two border it.
-                expected[0] = PatchCounts { regular: 6 * n, transition: 2 * n, filling: 0 };
-                expected[1..depth as usize].fill(PatchCounts { regular: n, transition: 2 * n, filling: 0 });
-                expected[depth as usize] = PatchCounts { regular: 3 * n, transition: 0, filling: n };
+                expected[0] = PatchCounts { regular: 6 * n, transition: 2 * n, filling: 0, ..PatchCounts::default() };
+                expected[1..depth as usize].fill(PatchCounts {
+                    regular: n,
+                    transition: 2 * n,
+                    filling: 0,
+                    ..PatchCounts::default()
+                });
+                expected[depth as usize] =
+                    PatchCounts { regular: 3 * n, transition: 0, filling: n, ..PatchCounts::default() };
             }
             assert_eq!(cut.counts, expected, "valence {n}, depth {depth}");
             // A leaf at level 0 is made of cage points.

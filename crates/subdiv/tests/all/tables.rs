@@ -25,6 +25,7 @@ fn total(counts: &[PatchCounts]) -> PatchCounts {
         regular: sum.regular + c.regular,
         transition: sum.transition + c.transition,
         filling: sum.filling + c.filling,
+        ..PatchCounts::default()
     })
 }
 
@@ -65,7 +66,10 @@ fn infinite_creases_cost_nothing_along_their_length() {
     let mut mesh = sheet(8, 8);
     mesh.creases = (0..8).map(|i| Crease { vertices: [36 + i, 37 + i], sharpness: 10.0 }).collect();
     let tables = refine(&mesh, 6, false);
-    assert_eq!(total(&deepest_counts(&tables)), PatchCounts { regular: 64, transition: 0, filling: 0 });
+    assert_eq!(
+        total(&deepest_counts(&tables)),
+        PatchCounts { regular: 64, transition: 0, filling: 0, ..PatchCounts::default() }
+    );
     // One edge less, and only the dart at its end is isolated.
     mesh.creases.pop();
     let counts = |level: u32| {
@@ -117,14 +121,17 @@ fn an_isolated_vertex_of_valence_n_adds_3n_regular_patches_a_level() {
     for n in [3, 5, 6, 7, 40] {
         let depth = 6;
         let tables = refine(&pole(n, 3), depth, false);
-        let rings = PatchCounts { regular: 0, transition: 2 * n, filling: 0 };
+        let rings = PatchCounts { regular: 0, transition: 2 * n, filling: 0, ..PatchCounts::default() };
         // Level 0: nine faces a sector, less the irregular one; two of them border it. The rim is regular too.
         let counts = deepest_counts(&tables);
         assert_eq!(counts[0], PatchCounts { regular: 6 * n, ..rings });
         for level in &counts[1..depth as usize] {
             assert_eq!(*level, PatchCounts { regular: n, ..rings }, "valence {n}");
         }
-        assert_eq!(counts[depth as usize], PatchCounts { regular: 3 * n, transition: 0, filling: n });
+        assert_eq!(
+            counts[depth as usize],
+            PatchCounts { regular: 3 * n, transition: 0, filling: n, ..PatchCounts::default() }
+        );
         for k in 2..=depth as usize {
             assert_eq!(tables.levels[k].points.len() as u32, 12 * n + 1, "points of level {k}");
         }
@@ -136,14 +143,17 @@ fn a_cube_has_no_regular_patch_before_level_2() {
     let counts = deepest_counts(&refine(&cube(), 3, false));
     assert_eq!(counts[0], PatchCounts::default());
     assert_eq!(counts[1], PatchCounts::default());
-    assert_eq!(counts[2], PatchCounts { regular: 24, transition: 48, filling: 0 });
-    assert_eq!(counts[3], PatchCounts { regular: 72, transition: 0, filling: 24 });
+    assert_eq!(counts[2], PatchCounts { regular: 24, transition: 48, filling: 0, ..PatchCounts::default() });
+    assert_eq!(counts[3], PatchCounts { regular: 72, transition: 0, filling: 24, ..PatchCounts::default() });
 }
 
 #[test]
 fn a_regular_sheet_is_never_split() {
     let tables = refine(&sheet(4, 4), 6, false);
-    assert_eq!(total(&deepest_counts(&tables)), PatchCounts { regular: 16, transition: 0, filling: 0 });
+    assert_eq!(
+        total(&deepest_counts(&tables)),
+        PatchCounts { regular: 16, transition: 0, filling: 0, ..PatchCounts::default() }
+    );
     assert_eq!(tables.point_count(), 25);
 }
 

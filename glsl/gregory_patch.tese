@@ -1,0 +1,278 @@
+#version 460
+// variants: lean=LEAN layers=LAYERS dump=DUMP
+// Gregory patches: quads of 20 points and triangles of 15, in their Bezier form (Loop et al. 2009, sections 3.1 and 4.4). A triangle
+// is drawn as three quads, the Ptex faces of its corners.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/gregory.glsl"
+#include "shared/seams.glsl"
+#include "shared/tex_tree.glsl"
+#include "shared/surface.glsl"
+
+layout(constant_id = 3) const bool CUT = false;        // each is a piece of a patch
+layout(constant_id = 10) const bool TRIANGLE = false;   // thirds of triangles
+layout(constant_id = 11) const bool EXACT_NORMALS = false; // of the rational patch, instead of those of its Bezier form
+const bool TRANSITION = true; // edges may be split
+// Whether seams have the same bits on both sides.
+layout(constant_id = 5) const bool WATERTIGHT = true;
+layout(quads, equal_spacing, ccw) in;
+layout(location = 0) in vec3 control_point[];
+layout(location = 1) patch in vec4 low_factors;
+layout(location = 2) patch in vec4 high_factors;
+layout(location = 3) patch in vec2 inner_factors;
+layout(location = 4) patch in uvec4 patch_words;
+layout(location = 5) patch in uvec3 piece_place;
+layout(location = 6) patch in uvec4 piece_first;
+layout(location = 7) patch in uvec4 piece_last;
+layout(location = 8) patch in uvec2 patch_places; // of the face, and of its object
+layout(location = 9) in vec3 curve_point[];
+layout(location = 10) in vec3 curve_across[];
+#include "shared/domain.glsl"
+#include "shared/border.glsl"
+
+struct Evaluated {
+    vec3 position;
+    vec3 along_u; // tangents; of a triangle towards corner 0 and corner 1, away from corner 2
+    vec3 along_v;
+};
+
+precise vec3 scaled_sum(vec3 a, vec3 b, float scale)
+{
+    precise vec3 result = a + scale * b;
+    return result;
+}
+
+Evaluated evaluate_quad(Parameter u, Parameter v)
+{
+    // f+ of corner i lies along the edge that begins there.
+    vec4 plus = vec4(u.t, v.t, u.s, v.s);
+    vec4 minus = vec4(v.t, u.s, v.s, u.t);
+    vec3 inner[4];
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        inner[i] = blend(plus[i], control_point[5 * i + 3], minus[i], control_point[5 * i + 4]);
+    }
+    vec4 nu;
+    vec4 du;
+    vec4 nv;
+    vec4 dv;
+    bernstein(u.t, u.s, nu, du);
+    bernstein(v.t, v.s, nv, dv);
+    vec3 row[4];
+    vec3 slope[4];
+    row[0] = weigh_ends(control_point[0], control_point[1], control_point[7], control_point[5], nu);
+    row[1] = weigh_ends(control_point[2], inner[0], inner[1], control_point[6], nu);
+    row[2] = weigh_ends(control_point[16], inner[3], inner[2], control_point[12], nu);
+    row[3] = weigh_ends(control_point[15], control_point[17], control_point[11], control_point[10], nu);
+    slope[0] = weigh_ends(control_point[0], control_point[1], control_point[7], control_point[5], du);
+    slope[1] = weigh_ends(control_point[2], inner[0], inner[1], control_point[6], du);
+    slope[2] = weigh_ends(control_point[16], inner[3], inner[2], control_point[12], du);
+    slope[3] = weigh_ends(control_point[15], control_point[17], control_point[11], control_point[10], du);
+    Evaluated result;
+    result.position = weigh_ends(row[0], row[1], row[2], row[3], nv);
+    result.along_u = weigh_ends(slope[0], slope[1], slope[2], slope[3], nv);
+    result.along_v = weigh_ends(row[0], row[1], row[2], row[3], dv);
+    if (EXACT_NORMALS) {
+        // How plus and minus change along u and v; bernstein's derivatives are a third.
+        const vec2 BY_PLUS[4] = vec2[4](vec2(1.0, 0.0), vec2(0.0, 1.0), vec2(-1.0, 0.0), vec2(0.0, -1.0));
+        const vec2 BY_MINUS[4] = vec2[4](vec2(0.0, 1.0), vec2(-1.0, 0.0), vec2(0.0, -1.0), vec2(1.0, 0.0));
+        vec4 weight = vec4(nu.y * nv.y, nu.z * nv.y, nu.z * nv.z, nu.y * nv.z) / 3.0;
+        [[unroll]] for (int i = 0; i < 4; ++i) {
+            vec3 first = blend_slope(plus[i], control_point[5 * i + 3], minus[i], control_point[5 * i + 4]);
+            vec3 second = blend_slope(minus[i], control_point[5 * i + 4], plus[i], control_point[5 * i + 3]);
+            result.along_u += weight[i] * (BY_PLUS[i].x * first + BY_MINUS[i].x * second);
+            result.along_v += weight[i] * (BY_PLUS[i].y * first + BY_MINUS[i].y * second);
+        }
+    }
+    return result;
+}
+
+// Barycentric coordinates of a point of a third of a triangle, which is bilinear between its corner, the middle of the next edge, the
+// centre and the middle of the edge before. Both thirds at a line inside get the same bits.
+precise vec3 barycentric(uint part, Parameter u, Parameter v)
+{
+    precise float next = 0.5 * (u.t * v.s);
+    precise float previous = 0.5 * (u.s * v.t);
+    precise float centre = (u.t * v.t) / 3.0;
+    precise float own = (u.s * v.s + (next + previous)) + centre;
+    precise float to_next = next + centre;
+    precise float to_previous = previous + centre;
+    precise vec3 result = part == 0u ? vec3(own, to_next, to_previous)
+                                     : (part == 1u ? vec3(to_previous, own, to_next) : vec3(to_next, to_previous, own));
+    return result;
+}
+
+Evaluated evaluate_triangle(vec3 at)
+{
+    Evaluated result;
+    result.position = vec3(0.0);
+    vec3 by[3] = vec3[3](vec3(0.0), vec3(0.0), vec3(0.0));
+    float product = 12.0 * (at.x * at.y * at.z);
+    [[unroll]] for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3;
+        const int k = (i + 2) % 3;
+        float a = at[i];
+        float b = at[j];
+        float c = at[k];
+        vec3 p = control_point[5 * i];
+        vec3 near = control_point[5 * i + 1];
+        vec3 far = control_point[5 * j + 2];
+        vec3 inner = blend(b, control_point[5 * i + 3], c, control_point[5 * i + 4]);
+        float both = 3.0 * a * b * (a + b);
+        result.position += (a * a * a) * p + (both * (a * near + b * far) + (product * a) * inner);
+        by[i] += (3.0 * a * a) * p + (9.0 * a * a * b + 6.0 * a * b * b) * near + (3.0 * b * b * b + 6.0 * a * b * b) * far
+            + (24.0 * a * b * c) * inner;
+        by[j] += (3.0 * a * a * a + 6.0 * a * a * b) * near + (9.0 * a * b * b + 6.0 * a * a * b) * far + (12.0 * a * a * c) * inner;
+        by[k] += (12.0 * a * a * b) * inner;
+        if (EXACT_NORMALS) {
+            by[j] += (product * a) * blend_slope(b, control_point[5 * i + 3], c, control_point[5 * i + 4]);
+            by[k] += (product * a) * blend_slope(c, control_point[5 * i + 4], b, control_point[5 * i + 3]);
+        }
+    }
+    result.along_u = by[0] - by[2];
+    result.along_v = by[1] - by[2];
+    return result;
+}
+
+Parameter turned(Parameter along)
+{
+    return Parameter(along.s, along.t);
+}
+
+// The half of an edge at its first end, or at the other, as spacing.glsl has the points of an edge of two halves.
+Parameter in_half(Parameter along, bool is_second)
+{
+    precise float near = 0.5 * along.t;
+    precise float far = 0.5 + 0.5 * along.s;
+    precise float beyond = 0.5 + 0.5 * along.t;
+    precise float rest = 0.5 * along.s;
+    return is_second ? Parameter(beyond, rest) : Parameter(near, far);
+}
+
+// Which of the shared edges a point lies on, and where: the outer ones first, which the neighbours know. NONE: on none.
+uint shared_edge_at(GregoryFace face, bvec4 is_on, Parameter u, Parameter v, out Parameter at, out uint sharp_edge)
+{
+    uint kind = gregory_kind(face);
+    bool is_part = TRIANGLE || kind == GREGORY_NGON;
+    uint edge = is_on.x ? 0u : (is_on.w ? 3u : (is_on.y ? 1u : 2u));
+    at = edge == 0u ? u : (edge == 1u ? v : (edge == 2u ? turned(u) : turned(v)));
+    sharp_edge = edge;
+    if (is_part) {
+        bool is_outer = edge == 0u || edge == 3u;
+        at = is_outer ? in_half(at, edge == 3u) : at;
+        if (TRIANGLE) {
+            uint part = gregory_part(face);
+            edge = edge == 0u ? part : (part + 2u) % 3u;
+            sharp_edge = edge;
+            return is_outer ? edge : NONE;
+        }
+        // Edges of the face: from the corner before, to the corner after.
+        sharp_edge = edge == 0u ? 1u : (edge == 3u ? 0u : 2u);
+    }
+    return edge;
+}
+
+// The limit point that a corner of the patch is, or NONE.
+uint corner_limit(GregoryFace face, bvec4 is_on)
+{
+    uint kind = gregory_kind(face);
+    uint corner = is_on.x && is_on.w ? 0u : (is_on.x && is_on.y ? 1u : (is_on.y && is_on.z ? 2u : (is_on.z && is_on.w ? 3u : NONE)));
+    if (corner == NONE) {
+        return NONE;
+    }
+    if (TRIANGLE) {
+        return corner == 0u ? face.limits[gregory_part(face)] : NONE;
+    }
+    if (kind == GREGORY_NGON) {
+        return corner == 0u ? face.limits[1] : (corner == 2u ? face.limits[3] : NONE);
+    }
+    return face.limits[corner];
+}
+
+EdgeFields edge_at(uint edge)
+{
+    EdgeFields result;
+    [[unroll]] for (uint i = 0u; i < 4u; ++i) {
+        result.curve[i] = curve_point[4u * edge + i];
+        result.across[i] = curve_across[4u * edge + i];
+    }
+    return result;
+}
+
+// Makes a point on edges what both sides have there. The bicubic patch across an edge decides, else the two patches have the same curve
+// and the same field across it.
+void share_point(bvec4 is_on, Parameter u, Parameter v, inout vec3 position, inout vec3 normal)
+{
+    SceneTables scene = push.frame.v.scene;
+    GregoryFace face = scene.v.gregory.v[patch_places.x];
+    Parameter at;
+    uint sharp_edge;
+    uint edge = shared_edge_at(face, is_on, u, v, at, sharp_edge);
+    uint limit = corner_limit(face, is_on);
+    bool is_sharp = edge != NONE && gregory_is_sharp(face, sharp_edge);
+    uint word = !TRIANGLE && gregory_kind(face) == GREGORY_QUAD && edge != NONE ? face.borders[edge] : NONE;
+    for (bool is_open = edge != NONE && limit == NONE; is_open; is_open = false) {
+        vec3 shared_normal;
+        evaluate_edge(edge_at(edge), at, position, shared_normal);
+        normal = is_sharp ? normal : shared_normal;
+    }
+    for (bool is_open = word != NONE && limit == NONE; is_open; is_open = false) {
+        BorderPoint border = border_point(word, (edge & 1u) == 0u ? u : v);
+        if (is_sharp) {
+            vec3 q[4];
+            border_curve(border, q);
+            position = curve_position(q, border_weights(border));
+        } else {
+            vec3 p[16];
+            border_points(border, p);
+            vec4 nu;
+            vec4 du;
+            vec4 nv;
+            vec4 dv;
+            cubic_basis(border.u.t, border.u.s, nu, du);
+            cubic_basis(border.v.t, border.v.s, nv, dv);
+            vec3 along_u;
+            vec3 along_v;
+            weigh_patch_and_tangents(p, nu, du, nv, dv, position, along_u, along_v);
+            position = over_36(position);
+            normal = unit_normal(along_u, along_v);
+        }
+    }
+    for (bool is_open = limit != NONE; is_open; is_open = false) {
+        Object object = scene.v.objects.v[patch_places.y];
+        LimitPoint point = scene.v.limits.v[limit];
+        position = to_world(object, point.position);
+        normal = normal_to_world(object, point.normal);
+    }
+    position = without_sign_of_zero(position);
+    normal = without_sign_of_zero(normal);
+}
+
+void main()
+{
+    Parameter u;
+    Parameter v;
+    bvec4 is_on;
+    domain_point(u, v, is_on);
+    PatchInfo info = PatchInfo(patch_words.x, patch_words.y, patch_words.z);
+    Evaluated point;
+    if (TRIANGLE) {
+        uint part = gregory_part(push.frame.v.scene.v.gregory.v[patch_places.x]);
+        point = evaluate_triangle(barycentric(part, u, v));
+    } else {
+        point = evaluate_quad(u, v);
+    }
+    vec3 position = without_sign_of_zero(point.position);
+    vec3 normal = without_sign_of_zero(unit_normal(point.along_u, point.along_v));
+    if (WATERTIGHT) {
+        for (bool is_open = any(is_on); is_open; is_open = false) {
+            share_point(is_on, u, v, position, normal);
+        }
+    }
+    vec2 st = vec2(0.0);
+    if (TEX_COORDS) {
+        SceneTables scene = push.frame.v.scene;
+        Object object = scene.v.objects.v[patch_places.y];
+        st = tree_tex_coord(scene, object, info.ptex_face - object.first_face, ptex_uv(info, vec2(u.t, v.t)));
+    }
+    put_surface_point(position, normal, normal, vec2(u.t, v.t), st, info, patch_words.w,
+                      TRIANGLE ? KIND_GREGORY_TRIANGLE : KIND_GREGORY_QUAD, shown_factor());
+}
