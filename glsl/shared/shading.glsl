@@ -7,6 +7,7 @@ const uint VIEW_PATCH = 2;
 const uint VIEW_LEVEL = 3;
 const uint VIEW_TESS = 4;
 const uint VIEW_UV = 5;
+const uint VIEW_COLOR = 6;
 
 // Unit directions to the lights.
 const vec3 TO_KEY = vec3(0.554, 0.755, 0.352);

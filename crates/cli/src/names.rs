@@ -116,6 +116,7 @@ pub enum ViewName {
     Level,
     Tess,
     Uv,
+    Color,
     Wire,
 }
 
@@ -128,6 +129,7 @@ impl From<ViewName> for View {
             ViewName::Level => Self::Level,
             ViewName::Tess => Self::Tess,
             ViewName::Uv => Self::Uv,
+            ViewName::Color => Self::Color,
             ViewName::Wire => Self::Wire,
         }
     }

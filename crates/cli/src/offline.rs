@@ -7,7 +7,7 @@ use glam::{Affine3A, Mat4, Vec3};
 use planish_gpu::{Calls, Device, Encoder, Recorded, SubmitReport};
 use planish_render::density::{MAX_UNCUT_DENSITY, isolation_level, largest_density};
 use planish_render::{
-    Culling, Density, DrawOptions, DrawPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, ObjectDesc,
+    Culling, Density, DrawOptions, DrawPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, Layers, ObjectDesc,
     Selection, Spacing, Status, Surface, SurfaceDesc, SurfaceMethod, Targets, View, preprocess,
 };
 use planish_scene::Camera;
@@ -103,6 +103,7 @@ impl Plan {
             watertight: setting.watertight,
             displaced: cage.is_displaced(),
             tex_coords: cage.has_uv(),
+            colors: cage.has_colors(),
             ..frame_needs(setting.spacing, density, &objects)
         };
         Ok(Self {
@@ -144,6 +145,7 @@ pub fn frame_needs(spacing: Spacing, density: f32, objects: &[ObjectDesc]) -> Fr
         watertight: true,
         displaced: false,
         tex_coords: false,
+        colors: false,
     }
 }
 
@@ -239,12 +241,12 @@ impl Session {
     }
 
     /// Makes images and the passes that draw into them.
-    pub fn images(&mut self, view: View, layers: bool) -> Result<Images> {
+    pub fn images(&mut self, view: View, layers: Layers) -> Result<Images> {
         let options = DrawOptions { view, layers, cull_back: self.hides_backs };
         let start = Instant::now();
         let passes = DrawPasses::new(&self.device, self.surface.desc(), &self.needs, &options)?;
         self.pipelines_ms += milliseconds(start);
-        let targets = Targets::new(&self.device, self.camera.size, options.needs_layers())?;
+        let targets = Targets::new(&self.device, self.camera.size, options.needed_layers())?;
         Ok(Images { targets, passes })
     }
 

@@ -1,5 +1,7 @@
 //! What a frame is asked to be.
 
+use crate::targets::Layers;
+
 /// How the irregular parts of a surface are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SurfaceMethod {
@@ -90,13 +92,15 @@ pub struct FrameNeeds {
     pub displaced: bool,
     /// Dumps have texture coordinates.
     pub tex_coords: bool,
+    /// Dumps have colours.
+    pub colors: bool,
 }
 
 impl FrameNeeds {
     /// All that limit surfaces may need.
     pub fn all(spacing: Spacing) -> Self {
-        let (displaced, tex_coords) = (false, false);
-        Self { spacing, culls: true, placed: true, cuts: true, watertight: true, displaced, tex_coords }
+        let (displaced, tex_coords, colors) = (false, false, false);
+        Self { spacing, culls: true, placed: true, cuts: true, watertight: true, displaced, tex_coords, colors }
     }
 }
 
@@ -129,6 +133,8 @@ pub enum View {
     Tess,
     /// Parameters of the Ptex face.
     Uv,
+    /// Colours of vertices, as they are.
+    Color,
     /// Shaded, with the edges of all triangles.
     Wire,
 }
@@ -143,11 +149,16 @@ impl View {
             Self::Level => 3,
             Self::Tess => 4,
             Self::Uv => 5,
+            Self::Color => 6,
         }
     }
 
-    /// Whether the view needs more than the normal.
-    pub fn needs_layers(self) -> bool {
-        !matches!(self, Self::Shaded | Self::Wire)
+    /// What the view needs besides the normal.
+    pub fn layers(self) -> Layers {
+        match self {
+            Self::Shaded | Self::Wire => Layers::None,
+            Self::Color => Layers::GeometryAndColors,
+            _ => Layers::Geometry,
+        }
     }
 }

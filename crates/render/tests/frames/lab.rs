@@ -4,8 +4,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, DeviceOptions, Encoder, Image, PipelineStatistics};
 use planish_render::{
-    CapturedVertex, DrawOptions, DrawPasses, DumpPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, PatchKind,
-    Spacing, Status, Surface, SurfaceDesc, Targets, View,
+    CapturedVertex, DrawOptions, DrawPasses, DumpPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, Layers,
+    PatchKind, Spacing, Status, Surface, SurfaceDesc, Targets, View,
 };
 use planish_shaders::DrawEntry;
 
@@ -166,12 +166,12 @@ pub struct Easel {
 
 impl Easel {
     pub fn new(lab: &Lab, spacing: Spacing, cull_back: bool, size: [u32; 2]) -> Self {
-        let options = DrawOptions { view: View::Shaded, layers: true, cull_back };
+        let options = DrawOptions { view: View::Shaded, layers: Layers::Geometry, cull_back };
         let desc = SurfaceDesc::default();
         Self {
             spacing,
             passes: DrawPasses::new(&lab.device, &desc, lab.needs(spacing), &options).expect("pipelines"),
-            targets: Targets::new(&lab.device, size, true).expect("images"),
+            targets: Targets::new(&lab.device, size, Layers::Geometry).expect("images"),
         }
     }
 
