@@ -347,7 +347,8 @@ fn the_layer_has_the_colours_of_the_points_that_are_seen_and_the_view_shows_them
             let expected = affine(points[pixel].map(f64::from));
             for c in 0..3 {
                 let color = f64::from(colors[pixel][c]);
-                assert!((color - expected[c]).abs() < 1e-5, "{way} {pixel}: {color}, expected {}", expected[c]);
+                // Rasterizers interpolate each value by itself, in floats.
+                assert!((color - expected[c]).abs() < 1e-4, "{way} {pixel}: {color}, expected {}", expected[c]);
                 // The beauty image has halves, rounded in any way.
                 let shown = f64::from(beauty[c][pixel]);
                 assert!((shown - color).abs() <= color.abs() / 1024.0 + 1e-7, "{way} {pixel}: {shown} of {color}");
