@@ -1,5 +1,5 @@
 #version 460
-// variants: lean=LEAN layers=LAYERS dump=DUMP
+// variants: lean=LEAN layers=LAYERS colors=LAYERS,COLORS dump=DUMP
 // Regular and transition patches: evaluates the bicubic B-spline (FAS section 5.1).
 #extension GL_GOOGLE_include_directive : require
 #include "shared/spacing.glsl"
@@ -8,6 +8,7 @@
 #include "shared/seams.glsl"
 #include "shared/displacement.glsl"
 #include "shared/tex_tree.glsl"
+#include "shared/colors.glsl"
 #include "shared/surface.glsl"
 
 layout(constant_id = 1) const bool TRANSITION = false;
@@ -354,6 +355,26 @@ vec3 displace(inout Evaluated point, TexPoints tex)
     return shading_normal;
 }
 
+// The colour of a point, by the weights of its position; `uv` is its place in its Ptex face.
+vec3 point_color(Evaluated point, uint ptex_face, vec2 uv)
+{
+    SceneTables scene = push.frame.v.scene;
+    Object object = scene.v.objects.v[patch_places.y];
+    vec3 result = vec3(1.0);
+    for (bool is_open = (object.flags & OBJECT_VERTEX_COLORS) != 0u; is_open; is_open = false) {
+        vec3 p[16];
+        uint boundary = patch_boundary(push.patches.v[point.place].info);
+        [[dont_unroll]] for (uint i = 0u; i < 16u; ++i) {
+            p[i] = control_point_of(push.patches, scene.v.point_colors, point.place, i, boundary);
+        }
+        result = patch_position(p, point.nu, point.nv);
+    }
+    for (bool is_open = (object.flags & OBJECT_VARYING_COLORS) != 0u; is_open; is_open = false) {
+        result = varying_color(scene, object, ptex_face - object.first_face, uv);
+    }
+    return result;
+}
+
 void main()
 {
     Parameter u;
@@ -380,4 +401,7 @@ void main()
     }
     put_surface_point(point.position, point.normal, shading_normal, vec2(u.t, v.t), st, info, patch_words.w,
                       patch_transition(info) != 0u ? KIND_TRANSITION : KIND_REGULAR, shown_factor());
+    if (COLORED) {
+        put_color(point_color(point, info.ptex_face, ptex_uv(info, vec2(u.t, v.t))));
+    }
 }

@@ -12,7 +12,7 @@ layout(location = 0) in uint list_place[];
 layout(location = 0) out vec3 limit_position[]; // of corners 0 to 3, and the middles of edges 0 to 3
 layout(location = 1) out vec3 limit_normal[];
 layout(location = 2) patch out uvec4 patch_words; // its PatchInfo, and its number
-layout(location = 3) patch out uint fan; // which of the points all triangles of an uneven quad meet at; else NONE
+layout(location = 3) patch out uvec2 fan_and_object; // which of the points all triangles of an uneven quad meet at, else NONE
 layout(location = 4) out vec3 shading_normal[]; // of the displaced surface
 layout(location = 5) out vec2 tex_coord[];
 
@@ -87,7 +87,7 @@ void main()
         bool is_mirrored = (object.flags & OBJECT_MIRRORED) != 0u;
         patch_words = uvec4(object.first_face + info.ptex_face, info.corner, info.flags,
                             (push.first_patch_id + face) | (is_mirrored ? PATCH_MIRRORED : 0u));
-        fan = split_edges == 0u ? NONE : 4u + uint(findLSB(split_edges));
+        fan_and_object = uvec2(split_edges == 0u ? NONE : 4u + uint(findLSB(split_edges)), entry.object);
         vec4 counts = 1.0 + vec4(uvec4(split_edges) >> uvec4(0, 1, 2, 3) & 1u);
         gl_TessLevelOuter[0] = counts.w;
         gl_TessLevelOuter[1] = counts.x;

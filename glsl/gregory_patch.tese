@@ -1,5 +1,5 @@
 #version 460
-// variants: lean=LEAN layers=LAYERS dump=DUMP
+// variants: lean=LEAN layers=LAYERS colors=LAYERS,COLORS dump=DUMP
 // Gregory patches: quads of 20 points and triangles of 15, in their Bezier form (Loop et al. 2009, sections 3.1 and 4.4). A triangle
 // is drawn as three quads, the Ptex faces of its corners.
 #extension GL_GOOGLE_include_directive : require

@@ -1,5 +1,5 @@
 #version 460
-// variants: lean=LEAN layers=LAYERS
+// variants: lean=LEAN layers=LAYERS colors=LAYERS,COLORS
 // Shades the surface: a key, a fill and a rim light over a small analytic sky; or a debug view; and the layers.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/frame.glsl"
@@ -16,6 +16,10 @@ layout(location = 4) in flat float in_factor;
 layout(location = 1) out vec4 out_normal_depth;    // N, Z
 layout(location = 2) out vec4 out_position_factor; // P, tess factor
 layout(location = 3) out uvec4 out_ids;            // face, patch | level << 28, u, v as bits
+#endif
+#if defined(COLORS)
+layout(location = 5) in vec3 in_color;
+layout(location = 4) out vec4 out_surface_color;
 #endif
 
 void main()
@@ -35,5 +39,9 @@ void main()
     out_ids = uvec4(in_ids.x, in_ids.y | in_ids.z << 28, floatBitsToUint(clamp(in_uv, 0.0, 1.0)));
 #else
     out_color = vec4(shade(facing, to_eye), 1.0);
+#endif
+#if defined(COLORS)
+    out_surface_color = vec4(in_color, 1.0);
+    out_color = VIEW == VIEW_COLOR ? out_surface_color : out_color;
 #endif
 }

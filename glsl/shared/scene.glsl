@@ -12,6 +12,10 @@ const uint OBJECT_HIDES_BACKS = 2;
 const uint OBJECT_MIRRORED = 4;
 // Its texture coordinates are bilinear in every face.
 const uint OBJECT_LINEAR_TEX_COORDS = 8;
+// It has colours, which are subdivided as positions are.
+const uint OBJECT_VERTEX_COLORS = 16;
+// It has colours, which are bilinear in every Ptex face.
+const uint OBJECT_VARYING_COLORS = 32;
 
 // A mesh at a place. "First" names a place in a table of all meshes or objects.
 struct Object {
@@ -190,6 +194,9 @@ struct SceneData {
     Indices face_tex_coords;  // 8 of each irregular face, at its limit points; or 4 of each quad of the trees
     Indices tex_nodes;        // four branches each
     Indices tex_roots;        // the branch of each Ptex face
+    Points point_colors;      // of the points of all levels; the three tables are empty where nothing needs them
+    Points limit_colors;      // of the limit points
+    Points slot_colors;       // of the slots of meshes: vertices, and faces of other than four sides
     LimitSeats limit_seats;
     LimitTangentTable limit_tangents;
     SlotDensities densities;
@@ -230,6 +237,8 @@ layout(constant_id = 6) const bool DISPLACED = false;
 layout(constant_id = 7) const bool TEX_COORDS = false;
 // Whether irregular faces are drawn as Gregory patches.
 layout(constant_id = 8) const bool GREGORY = false;
+// Whether colours are asked for.
+layout(constant_id = 9) const bool COLORED = false;
 
 vec3 to_world(Object object, vec3 p)
 {

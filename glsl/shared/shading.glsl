@@ -7,7 +7,8 @@ const uint VIEW_PATCH = 2;
 const uint VIEW_LEVEL = 3;
 const uint VIEW_TESS = 4;
 const uint VIEW_UV = 5;
-const uint VIEW_GREGORY = 6; // patches in the colours of Loop et al. 2009
+const uint VIEW_COLOR = 6;
+const uint VIEW_GREGORY = 7; // patches in the colours of Loop et al. 2009
 
 // Unit directions to the lights.
 const vec3 TO_KEY = vec3(0.554, 0.755, 0.352);

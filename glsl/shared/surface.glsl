@@ -1,7 +1,7 @@
 // What an evaluated point of the surface becomes: outputs for the beauty image, for all layers, or for a dump.
 //
 // LEAN draws the beauty image from the normal alone; every interpolated value costs triangle set-up. LAYERS carries what
-// the other layers and the debug views need. DUMP is captured by transform feedback.
+// the other layers and the debug views need, with COLORS the colour too. DUMP is captured by transform feedback.
 #ifndef PLANISH_SURFACE
 #define PLANISH_SURFACE
 #include "frame.glsl"
@@ -17,13 +17,14 @@ const uint KIND_CREASE = 6;
 const uint KIND_BOUNDARY = 7;
 
 #if defined(DUMP)
-layout(xfb_buffer = 0, xfb_stride = 60) out;
+layout(xfb_buffer = 0, xfb_stride = 72) out;
 layout(location = 0, xfb_buffer = 0, xfb_offset = 0) out vec3 out_position;
 layout(location = 1, xfb_buffer = 0, xfb_offset = 12) out vec3 out_normal;
 layout(location = 2, xfb_buffer = 0, xfb_offset = 24) out vec2 out_uv;
 layout(location = 3, xfb_buffer = 0, xfb_offset = 32) out uvec2 out_face; // Ptex face; level and kind << 8
 layout(location = 4, xfb_buffer = 0, xfb_offset = 40) out vec2 out_tex_coord;
 layout(location = 5, xfb_buffer = 0, xfb_offset = 48) out vec3 out_shading_normal;
+layout(location = 6, xfb_buffer = 0, xfb_offset = 60) out vec3 out_color;
 #else
 layout(location = 0) out vec3 out_normal;
 #if defined(LAYERS)
@@ -31,6 +32,9 @@ layout(location = 1) out vec3 out_position;
 layout(location = 2) out vec2 out_uv;
 layout(location = 3) out flat uvec4 out_ids; // Ptex face, patch, level, kind
 layout(location = 4) out flat float out_factor;
+#if defined(COLORS)
+layout(location = 5) out vec3 out_color;
+#endif
 #endif
 #endif
 
@@ -49,12 +53,21 @@ uint shown_kind(PatchInfo info, uint kind)
 // it, as every value more that is interpolated costs triangle set-up.
 const float MIRRORED_LENGTH = 1048576.0;
 
+// Gives the point a colour; without it is white. After put_surface_point.
+void put_color(vec3 color)
+{
+#if defined(DUMP) || defined(COLORS)
+    out_color = color;
+#endif
+}
+
 // `normal` is the limit surface's, along which it is displaced; `shading_normal` that of the surface drawn. `patch_id`: the patch's
 // number, with PATCH_MIRRORED.
 void put_surface_point(vec3 position, vec3 normal, vec3 shading_normal, vec2 uv, vec2 st, PatchInfo info, uint patch_id, uint kind, float factor)
 {
     bool is_mirrored = (patch_id & PATCH_MIRRORED) != 0u;
     gl_Position = push.view_projection * vec4(position, 1.0);
+    put_color(vec3(1.0));
 #if defined(DUMP)
     out_normal = is_mirrored ? -normal : normal;
     out_tex_coord = st;

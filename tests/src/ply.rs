@@ -11,6 +11,8 @@ const VERTEX_PROPERTIES: &str = "float x, float y, float z, float nx, float ny, 
 const TEX_COORD_PROPERTIES: &str = ", float s, float t";
 /// Those that follow where the surface is displaced.
 const SHADING_PROPERTIES: &str = ", float sx, float sy, float sz";
+/// Those that follow where the mesh has colours.
+const COLOR_PROPERTIES: &str = ", float r, float g, float b";
 /// Bytes of a vertex without those: eight floats, an int and two bytes.
 const VERTEX_BYTES: usize = 8 * 4 + 4 + 2;
 /// Bytes of a triangle: its size in a byte, and three ints.
@@ -37,6 +39,8 @@ pub struct Vertex {
     pub tex_coord: [f32; 2],
     /// Normal of the displaced surface; 0 where it is not.
     pub shading_normal: [f32; 3],
+    /// Colour; 0 where there is none.
+    pub color: [f32; 3],
 }
 
 /// Which properties a dump's vertices have besides those of all dumps.
@@ -46,18 +50,25 @@ pub struct Properties {
     pub tex_coords: bool,
     /// `sx sy sz`.
     pub shading_normals: bool,
+    /// `r g b`.
+    pub colors: bool,
 }
 
 impl Properties {
-    const ALL: [Self; 4] = [
-        Self { tex_coords: false, shading_normals: false },
-        Self { tex_coords: true, shading_normals: false },
-        Self { tex_coords: false, shading_normals: true },
-        Self { tex_coords: true, shading_normals: true },
-    ];
+    /// Every combination.
+    fn all() -> impl Iterator<Item = Self> {
+        (0..8).map(|bits| Self { tex_coords: bits & 1 != 0, shading_normals: bits & 2 != 0, colors: bits & 4 != 0 })
+    }
+
+    /// How many floats precede the shading normal, precede the colour, and follow the other properties in all.
+    fn ends(self) -> [usize; 3] {
+        let tex_coords = if self.tex_coords { 2 } else { 0 };
+        let shading = tex_coords + if self.shading_normals { 3 } else { 0 };
+        [tex_coords, shading, shading + if self.colors { 3 } else { 0 }]
+    }
 
     fn vertex_bytes(self) -> usize {
-        VERTEX_BYTES + if self.tex_coords { 8 } else { 0 } + if self.shading_normals { 12 } else { 0 }
+        VERTEX_BYTES + 4 * self.ends()[2]
     }
 }
 
@@ -78,7 +89,7 @@ impl Dump {
         let start = start.ok_or_else(|| fault("no header"))? + HEADER_END.len();
         let header = String::from_utf8_lossy(&bytes[..start]).into_owned();
         let vertex_count = count_after(&header, "element vertex ").ok_or_else(|| fault("no vertex count"))?;
-        let properties = Properties::ALL.into_iter().find(|&all| header == expected_header(vertex_count, all));
+        let properties = Properties::all().find(|&all| header == expected_header(vertex_count, all));
         let properties = properties.ok_or_else(|| fault(&format!("not the header of the interface:\n{header}")))?;
         let vertices = start..start + vertex_count * properties.vertex_bytes();
         let expected = vertices.end + vertex_count / 3 * TRIANGLE_BYTES;
@@ -100,7 +111,10 @@ impl Dump {
             let word = |index: usize| word_at(4 * index);
             let float = |index: usize| f32::from_le_bytes(word(index));
             let last_float = |index: usize| f32::from_le_bytes(word_at(VERTEX_BYTES + 4 * index));
-            let first_of_shading = if properties.tex_coords { 2 } else { 0 };
+            let [shading, color, _] = properties.ends();
+            let vector = |is_there, first: usize| {
+                if is_there { [0, 1, 2].map(|axis| last_float(first + axis)) } else { [0.0; 3] }
+            };
             Vertex {
                 position: [0, 1, 2].map(float),
                 normal: [3, 4, 5].map(float),
@@ -109,11 +123,8 @@ impl Dump {
                 level: bytes[VERTEX_BYTES - 2],
                 kind: bytes[VERTEX_BYTES - 1],
                 tex_coord: if properties.tex_coords { [0, 1].map(last_float) } else { [0.0; 2] },
-                shading_normal: if properties.shading_normals {
-                    [0, 1, 2].map(|axis| last_float(first_of_shading + axis))
-                } else {
-                    [0.0; 3]
-                },
+                shading_normal: vector(properties.shading_normals, shading),
+                color: vector(properties.colors, color),
             }
         })
     }
@@ -152,6 +163,7 @@ fn expected_header(vertex_count: usize, properties: Properties) -> String {
     let mut names = VERTEX_PROPERTIES.to_owned();
     names.push_str(if properties.tex_coords { TEX_COORD_PROPERTIES } else { "" });
     names.push_str(if properties.shading_normals { SHADING_PROPERTIES } else { "" });
+    names.push_str(if properties.colors { COLOR_PROPERTIES } else { "" });
     let properties: String = names.split(", ").map(|property| format!("property {property}\n")).collect();
     let triangle_count = vertex_count / 3;
     format!(

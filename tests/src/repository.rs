@@ -39,9 +39,10 @@ pub fn model(name: &str) -> Option<PathBuf> {
 
 /// Beginnings of the names of scenes that are about rules. Rules do not change how patches are tessellated: where that is
 /// what is tested, one factor is enough for them.
-const RULES: [&str; 12] = [
+const RULES: [&str; 13] = [
     "boundary_",
     "chaikin_",
+    "color_",
     "corner_",
     "crease_",
     "cube_all_",

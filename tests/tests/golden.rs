@@ -1,4 +1,4 @@
-//! Images look as they did: the hero, and a small mesh in every view.
+//! Images look as they did: the hero, and small meshes in every view.
 //!
 //! `PLANISH_UPDATE_GOLDEN=1 cargo test --release -p planish-tests --test golden` replaces the committed images. Look at
 //! them before they are committed.
@@ -12,11 +12,13 @@ use planish_tests::program::Planish;
 use planish_tests::repository::scene;
 
 /// Every view that a beauty image can show.
-const VIEWS: [&str; 7] = ["shaded", "normal", "patch", "level", "tess", "uv", "wire"];
+const VIEWS: [&str; 8] = ["shaded", "normal", "patch", "level", "tess", "uv", "color", "wire"];
 /// How the hero is to be seen; `tools/run` has the same camera.
 const HERO_FLAGS: &str = "--size 320x180 --samples 16 --eye 4.3,3.7,5.4 --target 0.25,1.1,0.35 --fov 32";
 /// Triangles, quads, a boundary, extraordinary vertices inside and on the boundary.
 const SMALL_MESH: &str = "mixed_triangles_quads";
+/// As small, and with colours.
+const COLORED_MESH: &str = "color_vertex";
 /// Of the images of the small mesh.
 const SMALL_FLAGS: &str = "--size 112x192 --samples 16";
 
@@ -42,7 +44,7 @@ fn every_view_looks_as_it_did() {
     let folder = temporary();
     for view in VIEWS {
         let image = image_of(
-            &scene(SMALL_MESH),
+            &scene(if view == "color" { COLORED_MESH } else { SMALL_MESH }),
             &format!("{SMALL_FLAGS} --fov 40 {} --view {view}", tess(view)),
             folder.path(),
         );

@@ -17,7 +17,7 @@ use serde_json::Value;
 /// What a layer holds where there is no surface, if it holds ids.
 const NO_SURFACE: u32 = u32::MAX;
 /// All layers.
-const ALL_LAYERS: &str = "--aov z,n,p,uv,face,patch,level,tess";
+const ALL_LAYERS: &str = "--aov z,n,p,uv,face,patch,level,tess,color";
 /// A view from near by, not along any axis.
 const OBLIQUE: &str = "--eye 2.1,1.4,3.3 --target 0.2,0.1,-0.1 --fov 50";
 
@@ -41,8 +41,8 @@ fn covered(layers: &Layers) -> Vec<bool> {
 #[test]
 fn channels_have_the_names_and_types_of_the_interface() {
     let found = layers("cube", &format!("--size 40x30 --tess 2 {ALL_LAYERS}"));
-    let floats = ["N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z", "Z", "tess", "uv.x", "uv.y"];
-    let mut expected: Vec<(&str, SampleType)> = floats.map(|name| (name, SampleType::F32)).into();
+    let floats = "N.X N.Y N.Z P.X P.Y P.Z Z color.B color.G color.R tess uv.x uv.y";
+    let mut expected: Vec<(&str, SampleType)> = floats.split(' ').map(|name| (name, SampleType::F32)).collect();
     expected.extend(["A", "B", "G", "R"].map(|name| (name, SampleType::F16)));
     expected.extend(["face", "level", "patch"].map(|name| (name, SampleType::U32)));
     expected.sort_by_key(|&(name, _)| name);

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use anyhow::bail;
 use planish_film::Layer;
-use planish_render::NO_SURFACE;
+use planish_render::{Layers, NO_SURFACE};
 
 /// Bits of the packed id below the level; see [`planish_render::Targets`].
 const PATCH_BITS: u32 = 28;
@@ -28,11 +28,13 @@ pub enum Aov {
     Level,
     /// Tess factor of the patch.
     Tess,
+    /// Colour of vertices.
+    Color,
 }
 
 impl Aov {
     /// Every layer with its name.
-    const NAMES: [(&'static str, Self); 8] = [
+    const NAMES: [(&'static str, Self); 9] = [
         ("z", Self::Depth),
         ("n", Self::Normal),
         ("p", Self::Position),
@@ -41,6 +43,7 @@ impl Aov {
         ("patch", Self::Patch),
         ("level", Self::Level),
         ("tess", Self::Tess),
+        ("color", Self::Color),
     ];
 
     /// Layers of the interface that do not exist yet.
@@ -97,6 +100,8 @@ pub struct PackedLayers {
     pub position_factor: Vec<[f32; 4]>,
     /// Ptex face, patch and level, u and v as bits.
     pub ids: Vec<[u32; 4]>,
+    /// Colours of vertices; empty unless they were drawn.
+    pub colors: Vec<[f32; 4]>,
 }
 
 impl PackedLayers {
@@ -115,6 +120,7 @@ impl PackedLayers {
             Aov::Patch => self.ids_as("patch", |id| id[1] & ((1 << PATCH_BITS) - 1)),
             Aov::Level => self.ids_as("level", |id| id[1] >> PATCH_BITS),
             Aov::Tess => Layer::float("tess", &[], self.position_factor.iter().map(|pixel| pixel[3]).collect()),
+            Aov::Color => Layer::float("color", &["R", "G", "B"], vectors(&self.colors)),
         }
     }
 
@@ -126,6 +132,15 @@ impl PackedLayers {
     fn ids_as(&self, name: &str, value: impl Fn(&[u32; 4]) -> u32) -> Layer {
         let value = |id: &[u32; 4]| if id[0] == NO_SURFACE { u32::MAX } else { value(id) };
         Layer::uint(name, self.ids.iter().map(value).collect())
+    }
+}
+
+/// What must be drawn for these layers.
+pub fn drawn_layers(aovs: &[Aov]) -> Layers {
+    match aovs {
+        [] => Layers::None,
+        aovs if aovs.contains(&Aov::Color) => Layers::GeometryAndColors,
+        _ => Layers::Geometry,
     }
 }
 
@@ -146,14 +161,14 @@ mod tests {
     fn lists_are_names_in_any_case_each_once() {
         assert_eq!(parse("").unwrap().available().unwrap(), []);
         assert_eq!(parse("Z,n, uv,z").unwrap().available().unwrap(), [Aov::Depth, Aov::Normal, Aov::Uv]);
-        let all = parse("z,n,p,uv,face,patch,level,tess").unwrap();
+        let all = parse("z,n,p,uv,face,patch,level,tess,color").unwrap();
         assert_eq!(all.available().unwrap(), Aov::NAMES.map(|(_, aov)| aov));
     }
 
     #[test]
     fn unknown_names_are_refused_with_the_known_ones() {
         let message = parse("z,albedo").unwrap_err();
-        assert_eq!(message, "layer albedo is unknown (known: z, n, p, uv, face, patch, level, tess)");
+        assert_eq!(message, "layer albedo is unknown (known: z, n, p, uv, face, patch, level, tess, color)");
     }
 
     #[test]
@@ -168,7 +183,15 @@ mod tests {
             normal_depth: vec![[0.0, 0.6, 0.8, 7.0], [0.0; 4]],
             position_factor: vec![[1.0, 2.0, 3.0, 16.0], [0.0; 4]],
             ids: vec![[5, 3 << PATCH_BITS | 99, 0.25_f32.to_bits(), 0.75_f32.to_bits()], [NO_SURFACE; 4]],
+            colors: vec![[2.0, -0.5, 0.25, 1.0], [0.0; 4]],
         }
+    }
+
+    #[test]
+    fn no_more_is_drawn_than_layers_need() {
+        assert_eq!(drawn_layers(&[]), Layers::None);
+        assert_eq!(drawn_layers(&[Aov::Depth, Aov::Uv]), Layers::Geometry);
+        assert_eq!(drawn_layers(&[Aov::Depth, Aov::Color]), Layers::GeometryAndColors);
     }
 
     #[test]
@@ -182,6 +205,7 @@ mod tests {
         assert_eq!(samples(Aov::Patch), Samples::Uint(vec![99, u32::MAX]));
         assert_eq!(samples(Aov::Level), Samples::Uint(vec![3, u32::MAX]));
         assert_eq!(samples(Aov::Tess), Samples::Float(vec![16.0, 0.0]));
+        assert_eq!(samples(Aov::Color), Samples::Float(vec![2.0, -0.5, 0.25, 0.0, 0.0, 0.0]));
     }
 
     #[test]
@@ -189,7 +213,17 @@ mod tests {
         let names = |aov| packed().layer(aov).channel_names().join(" ");
         assert_eq!(
             Aov::NAMES.map(|(_, aov)| names(aov)),
-            ["Z", "N.X N.Y N.Z", "P.X P.Y P.Z", "uv.x uv.y", "face", "patch", "level", "tess"]
+            [
+                "Z",
+                "N.X N.Y N.Z",
+                "P.X P.Y P.Z",
+                "uv.x uv.y",
+                "face",
+                "patch",
+                "level",
+                "tess",
+                "color.R color.G color.B"
+            ]
         );
     }
 }

@@ -80,7 +80,7 @@ pub struct RenderArguments {
     /// Samples a pixel, averaged
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = RangedU64ValueParser::<u32>::new().range(1..=MAX_SAMPLES))]
     pub samples: u32,
-    /// Extra layers of EXR files: z, n, p, uv, face, patch, level, tess; always of one sample at the pixel's centre
+    /// Extra layers of EXR files: z, n, p, uv, face, patch, level, tess, color (of vertices); always of one sample at the pixel's centre
     #[arg(long, value_name = "LIST", default_value = "", hide_default_value = true)]
     pub aov: AovList,
     /// What the beauty image shows

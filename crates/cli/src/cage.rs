@@ -125,6 +125,11 @@ impl Cage {
         self.scene.meshes.iter().any(|mesh| !mesh.control_mesh.face_varying.is_empty())
     }
 
+    /// Whether a mesh has colours.
+    pub fn has_colors(&self) -> bool {
+        self.scene.meshes.iter().any(|mesh| mesh.control_mesh.colors.is_some())
+    }
+
     /// Length of the bounding box' diagonal.
     pub fn diagonal(&self) -> f64 {
         self.scene.bounds().map_or(0.0, |bounds| bounds.diagonal())

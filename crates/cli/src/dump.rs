@@ -34,10 +34,14 @@ pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
     if cage.has_uv() {
         session.surface.set_tex_coords(&device, &cage.meshes())?;
     }
+    if cage.has_colors() {
+        session.surface.set_colors(&device, &cage.meshes())?;
+    }
     let start = Instant::now();
     let passes = DumpPasses::new(&device, &plan.desc, &plan.needs)?;
     session.pipelines_ms += milliseconds(start);
-    let properties = DumpProperties { tex_coords: cage.has_uv(), shading_normals: cage.is_displaced() };
+    let properties =
+        DumpProperties { tex_coords: cage.has_uv(), shading_normals: cage.is_displaced(), colors: cage.has_colors() };
     let mut dump = Dump { passes, session, cages: cage.positions(), properties };
 
     let mut frames = Vec::new();
@@ -126,8 +130,8 @@ impl Dump<'_> {
 
 fn dump_vertex(vertex: &CapturedVertex) -> DumpVertex {
     let [level, kind, ..] = vertex.level_and_kind.to_le_bytes();
-    let &CapturedVertex { position, normal, uv, ptex_face, tex_coord, shading_normal, .. } = vertex;
-    DumpVertex { position, normal, uv, face: ptex_face as i32, level, kind, tex_coord, shading_normal }
+    let &CapturedVertex { position, normal, uv, ptex_face, tex_coord, shading_normal, color, .. } = vertex;
+    DumpVertex { position, normal, uv, face: ptex_face as i32, level, kind, tex_coord, shading_normal, color }
 }
 
 #[cfg(test)]
@@ -144,6 +148,7 @@ mod tests {
             level_and_kind: 5 | 2 << 8,
             tex_coord: [0.125, 2.0],
             shading_normal: [1.0, 0.0, 0.0],
+            color: [0.5, 0.25, 0.0],
         };
         let vertex = dump_vertex(&captured);
         assert_eq!((vertex.level, vertex.kind, vertex.face, vertex.uv), (5, 2, 7, [0.25, 0.5]));

@@ -83,10 +83,13 @@ impl ColorSum {
 
 /// Reads the layers that the targets hold.
 pub fn read_layers(device: &Device, targets: &Targets) -> Result<PackedLayers> {
-    let [normal_depth, position_factor, ids] = targets.layers() else { return Ok(PackedLayers::default()) };
+    let [normal_depth, position_factor, ids, colors @ ..] = targets.layers() else {
+        return Ok(PackedLayers::default());
+    };
     Ok(PackedLayers {
         normal_depth: ReadBack::new(device, normal_depth)?.floats(device)?,
         position_factor: ReadBack::new(device, position_factor)?.floats(device)?,
         ids: ReadBack::new(device, ids)?.words(device)?,
+        colors: colors.first().map_or(Ok(Vec::new()), |image| ReadBack::new(device, image)?.floats(device))?,
     })
 }

@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use anyhow::{Context, Result};
 use planish_render::{Preprocessed, SurfaceDesc, SurfaceMethod, preprocess};
 use planish_subdiv::edits::deepest_level;
-use planish_subdiv::mesh::{BoundaryInterpolation, Creasing, FaceVaryingInterpolation, TriangleSubdivision};
+use planish_subdiv::mesh::{
+    BoundaryInterpolation, Creasing, FaceVaryingInterpolation, TriangleSubdivision, VertexInterpolation,
+};
 use planish_subdiv::selection::{PatchCounts, deepest_cut};
 use planish_subdiv::tables::{GregoryKind, IndexLists, Tables};
 use planish_subdiv::{ControlMesh, patch::PatchInfo};
@@ -71,6 +73,8 @@ struct Features {
     /// The finest level that an edit names a component of.
     deepest_edit_level: u32,
     uv: bool,
+    /// How colours of vertices are interpolated, of the first mesh that has any.
+    colors: Option<&'static str>,
     boundary: &'static str,
     creasing: &'static str,
     triangles: &'static str,
@@ -162,6 +166,10 @@ impl Features {
             edits: sum(|mesh| mesh.edits.len()),
             deepest_edit_level: meshes.iter().map(|mesh| deepest_level(mesh)).max().unwrap_or(0),
             uv,
+            colors: meshes.iter().find_map(|mesh| mesh.colors.as_ref()).map(|colors| match colors.interpolation {
+                VertexInterpolation::Vertex => "vertex",
+                VertexInterpolation::Varying => "varying",
+            }),
             boundary: match options.boundary {
                 BoundaryInterpolation::None => "none",
                 BoundaryInterpolation::EdgeOnly => "edge only",
@@ -207,6 +215,7 @@ impl Features {
         if self.uv {
             parts.push(format!("texture coordinates (interpolation: {})", self.face_varying));
         }
+        parts.extend(self.colors.map(|colors| format!("colours of vertices (interpolation: {colors})")));
         if parts.is_empty() { "none".to_owned() } else { parts.join(", ") }
     }
 }
@@ -324,6 +333,8 @@ pub fn table_bytes(tables: &Tables) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use planish_subdiv::mesh::VertexColors;
+
     use super::*;
 
     #[test]
@@ -341,5 +352,7 @@ mod tests {
             Features::new(&[&mesh], true).to_text(),
             "2 holes, texture coordinates (interpolation: corners plus 1)"
         );
+        mesh.colors = Some(VertexColors { interpolation: VertexInterpolation::Varying, ..VertexColors::default() });
+        assert_eq!(Features::new(&[&mesh], false).to_text(), "2 holes, colours of vertices (interpolation: varying)");
     }
 }

@@ -125,6 +125,7 @@ pub enum ViewName {
     Level,
     Tess,
     Uv,
+    Color,
     Wire,
 }
 
@@ -137,6 +138,7 @@ impl From<ViewName> for View {
             ViewName::Level => Self::Level,
             ViewName::Tess => Self::Tess,
             ViewName::Uv => Self::Uv,
+            ViewName::Color => Self::Color,
             ViewName::Wire => Self::Wire,
         }
     }

@@ -7,7 +7,7 @@ use glam::{Affine3A, Mat4, Vec3};
 use planish_gpu::{Calls, Device, Encoder, Recorded, SubmitReport};
 use planish_render::density::{MAX_UNCUT_DENSITY, isolation_level, largest_density};
 use planish_render::{
-    Culling, Density, DrawOptions, DrawPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, ObjectDesc,
+    Culling, Density, DrawOptions, DrawPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, Layers, ObjectDesc,
     Selection, Spacing, Status, Surface, SurfaceDesc, SurfaceMethod, Targets, View, preprocess,
 };
 use planish_scene::Camera;
@@ -109,6 +109,7 @@ impl Plan {
             tex_coords: cage.has_uv(),
             gregory: is_gregory,
             exact_normals: setting.exact_normals,
+            colors: cage.has_colors(),
             ..frame_needs(setting.spacing, density, &objects)
         };
         Ok(Self {
@@ -166,6 +167,7 @@ pub fn frame_needs(spacing: Spacing, density: f32, objects: &[ObjectDesc]) -> Fr
         tex_coords: false,
         gregory: false,
         exact_normals: false,
+        colors: false,
     }
 }
 
@@ -264,12 +266,12 @@ impl Session {
     }
 
     /// Makes images and the passes that draw into them.
-    pub fn images(&mut self, view: View, layers: bool) -> Result<Images> {
+    pub fn images(&mut self, view: View, layers: Layers) -> Result<Images> {
         let options = DrawOptions { view, layers, cull_back: self.hides_backs };
         let start = Instant::now();
         let passes = DrawPasses::new(&self.device, self.surface.desc(), &self.needs, &options)?;
         self.pipelines_ms += milliseconds(start);
-        let targets = Targets::new(&self.device, self.camera.size, options.needs_layers())?;
+        let targets = Targets::new(&self.device, self.camera.size, options.needed_layers())?;
         Ok(Images { targets, passes })
     }
 

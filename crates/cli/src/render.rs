@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail};
 use planish_film::{Film, ImageFormat, Metadata, check_image_output, write_image};
 
-use crate::aov::Aov;
+use crate::aov::{Aov, drawn_layers};
 use crate::args::RenderArguments;
 use crate::cage::Cage;
 use crate::console::Console;
@@ -27,7 +27,10 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<()> {
     plan.cull(arguments.frames.no_cull);
     let device = open_device(&arguments.device, console)?;
     let mut session = Session::new(&device, &cage, &plan, console)?;
-    let images = session.images(arguments.shown.into(), !aovs.is_empty())?;
+    let images = session.images(arguments.shown.into(), drawn_layers(aovs))?;
+    if images.targets.has_vertex_colors() {
+        session.surface.set_colors(&device, &cage.meshes())?;
+    }
     let mut sum = ColorSum::new(&device, &images.targets)?;
 
     let mut frames = Vec::new();

@@ -27,6 +27,8 @@ pub struct DumpVertex {
     pub tex_coord: [f32; 2],
     /// `sx sy sz`, the shading normal of a displaced surface.
     pub shading_normal: [f32; 3],
+    /// `r g b`, the colour.
+    pub color: [f32; 3],
 }
 
 /// What a dump says of each vertex besides what all dumps say.
@@ -36,10 +38,12 @@ pub struct DumpProperties {
     pub tex_coords: bool,
     /// `sx sy sz`.
     pub shading_normals: bool,
+    /// `r g b`.
+    pub colors: bool,
 }
 
-/// Bytes of a vertex at most: 8 floats, an int, 2 uchars, 5 floats.
-const VERTEX_BYTES: usize = 8 * 4 + 4 + 2 + 5 * 4;
+/// Bytes of a vertex at most: 8 floats, an int, 2 uchars, 8 floats.
+const VERTEX_BYTES: usize = 8 * 4 + 4 + 2 + 8 * 4;
 /// Bytes of a triangle: a uchar and 3 ints.
 const TRIANGLE_BYTES: usize = 1 + 3 * 4;
 
@@ -59,6 +63,9 @@ impl DumpVertex {
         }
         if properties.shading_normals {
             put(&self.shading_normal);
+        }
+        if properties.colors {
+            put(&self.color);
         }
     }
 }
@@ -111,6 +118,7 @@ fn header(vertex_count: i32, properties: DumpProperties) -> String {
     let tex_coords = if properties.tex_coords { "property float s\nproperty float t\n" } else { "" };
     let shading =
         if properties.shading_normals { "property float sx\nproperty float sy\nproperty float sz\n" } else { "" };
+    let colors = if properties.colors { "property float r\nproperty float g\nproperty float b\n" } else { "" };
     format!(
         "ply\n\
          format binary_little_endian 1.0\n\
@@ -126,7 +134,7 @@ fn header(vertex_count: i32, properties: DumpProperties) -> String {
          property int face\n\
          property uchar level\n\
          property uchar kind\n\
-         {tex_coords}{shading}\
+         {tex_coords}{shading}{colors}\
          element face {}\n\
          property list uchar int vertex_indices\n\
          end_header\n",

@@ -15,6 +15,7 @@ fn vertex(i: u32) -> DumpVertex {
         kind: 5,
         tex_coord: [f, 0.5],
         shading_normal: [0.0, f, -1.0],
+        color: [2.0, f, -0.5],
     }
 }
 
@@ -109,12 +110,11 @@ fn wrong_counts_are_refused_and_leave_no_file() {
 }
 
 #[test]
-fn texture_coordinates_and_shading_normals_follow_where_they_are_asked_for() {
+fn texture_coordinates_shading_normals_and_colours_follow_where_they_are_asked_for() {
     let folder = tempfile::tempdir().unwrap();
-    let all = DumpProperties { tex_coords: true, shading_normals: true };
-    for properties in
-        [DumpProperties { shading_normals: false, ..all }, DumpProperties { tex_coords: false, ..all }, all]
-    {
+    for bits in 0..8 {
+        let [tex_coords, shading_normals, colors] = [1, 2, 4].map(|bit| bits & bit != 0);
+        let properties = DumpProperties { tex_coords, shading_normals, colors };
         let path = folder.path().join("dump.ply");
         write_ply_stream(&path, 3, properties, (0..3).map(vertex)).unwrap();
         let bytes = fs::read(&path).unwrap();
@@ -130,6 +130,10 @@ fn texture_coordinates_and_shading_normals_follow_where_they_are_asked_for() {
         if properties.shading_normals {
             expected.extend(vertex(2).shading_normal);
             expected_names.extend(["sx", "sy", "sz"]);
+        }
+        if properties.colors {
+            expected.extend(vertex(2).color);
+            expected_names.extend(["r", "g", "b"]);
         }
         assert_eq!(names, expected_names);
         // What is last of the third vertex lies before the one triangle.

@@ -23,6 +23,8 @@ pub struct Limits {
     pub max_push_size: u32,
     /// Threads in one compute group.
     pub max_local_size: u32,
+    /// Colour targets that one pass can draw into.
+    pub max_color_attachments: u32,
     /// Pixels of a side of an image.
     pub max_image_extent: u32,
     /// Bytes of one buffer.
@@ -80,6 +82,7 @@ impl Candidate {
             max_push_size: core.limits.max_push_constants_size,
             max_local_size: core.limits.max_compute_work_group_size[0]
                 .min(core.limits.max_compute_work_group_invocations),
+            max_color_attachments: core.limits.max_color_attachments,
             max_image_extent: core.limits.max_image_dimension2_d.min(core.limits.max_framebuffer_width),
             max_buffer_size: newer.max_buffer_size,
             largest_heap: memory.memory_heaps_as_slice().iter().map(|heap| heap.size).max().unwrap_or(0),

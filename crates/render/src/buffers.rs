@@ -255,7 +255,8 @@ impl ListBuffers {
 /// Keeps all of a surface's buffers alive as long as a recording.
 pub(crate) fn keep(encoder: &mut Encoder, surface: &crate::surface::Surface) {
     let all = surface.buffers.all().into_iter().chain(surface.frame.all()).chain(surface.lists.all());
-    all.chain(surface.maps.all()).chain(surface.tex_coords.all()).for_each(|buffer| encoder.keep(buffer));
+    let all = all.chain(surface.maps.all()).chain(surface.tex_coords.all()).chain(surface.colors.all());
+    all.for_each(|buffer| encoder.keep(buffer));
 }
 
 fn read_back<T>(device: &Device, name: &str, count: usize) -> Result<Buffer, Error> {

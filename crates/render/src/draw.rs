@@ -10,24 +10,33 @@ use crate::lists::{PatchKind, draw_arguments};
 use crate::options::{FrameNeeds, SurfaceMethod, View};
 use crate::pipelines::{Output, PipelineOptions, pipelines};
 use crate::surface::{Surface, SurfaceDesc};
-use crate::targets::Targets;
+use crate::targets::{Layers, Targets};
 
 /// What an image is to show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawOptions {
     /// What the beauty image shows.
     pub view: View,
-    /// Draw all layers, not only the colour.
-    pub layers: bool,
+    /// Which layers are drawn besides it, at least.
+    pub layers: Layers,
     /// Leave out triangles that show their back: where all objects hide theirs.
     pub cull_back: bool,
 }
 
 impl DrawOptions {
-    /// Whether the targets must have layers.
-    pub fn needs_layers(&self) -> bool {
-        self.layers || self.view.needs_layers()
+    /// The layers that the targets must have.
+    pub fn needed_layers(&self) -> Layers {
+        self.layers.max(self.view.layers())
     }
+}
+
+/// Refuses a device that has too few colour targets.
+fn check_targets(device: &Device, layers: Layers) -> Result<(), Error> {
+    let (found, expected) = (device.limits().max_color_attachments, layers.target_count() as u32);
+    if found >= expected {
+        return Ok(());
+    }
+    Err(Error::TooFewTargets { device: device.name().to_owned(), found, expected })
 }
 
 /// The passes that draw a surface into images.
@@ -49,10 +58,12 @@ impl DrawPasses {
         if is_wire && !device.has(Feature::FillModeNonSolid) {
             return Err(Error::NoLines { device: device.name().to_owned() });
         }
+        let layers = options.needed_layers();
+        check_targets(device, layers)?;
         let fill = PipelineOptions {
             method: surface.method,
             spacing: needs.spacing,
-            output: if options.needs_layers() { Output::Layers } else { Output::Lean },
+            output: Output::Image(layers),
             view: options.view,
             cull_back: options.cull_back,
             wire: false,
@@ -63,6 +74,7 @@ impl DrawPasses {
             displaced: needs.displaced,
             tex_coords: false,
             exact_normals: needs.exact_normals,
+            colors: layers == Layers::GeometryAndColors,
         };
         let wire = PipelineOptions { wire: true, ..fill };
         Ok(Self {

@@ -44,6 +44,8 @@ pub struct CapturedVertex {
     pub tex_coord: [f32; 2],
     /// Unit normal of the displaced surface, or 0; of others the normal.
     pub shading_normal: [f32; 3],
+    /// Colour, if it was asked for; white where the mesh has none.
+    pub color: [f32; 3],
 }
 
 /// The passes that capture a surface.
@@ -75,6 +77,7 @@ impl DumpPasses {
             displaced: needs.displaced,
             tex_coords: needs.tex_coords,
             exact_normals: needs.exact_normals,
+            colors: needs.colors,
         };
         let buffer = |name, kind, size| Buffer::new(device, &BufferDesc { name, kind, size });
         Ok(Self {

@@ -36,6 +36,16 @@ pub enum Error {
         /// Its name.
         device: String,
     },
+    /// The device cannot draw colours of vertices beside the other layers.
+    #[error("device {device} draws into {found} colour targets at once, colours of vertices need {expected}")]
+    TooFewTargets {
+        /// Its name.
+        device: String,
+        /// Targets that it has.
+        found: u32,
+        /// Targets that are needed.
+        expected: u32,
+    },
     /// The tessellator made another number of triangles than its specification says.
     #[error("the device tessellated {found} triangles where {expected} were expected")]
     TriangleCount {

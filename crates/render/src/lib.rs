@@ -7,6 +7,7 @@
 
 mod buffers;
 pub mod camera;
+mod colors;
 pub mod density;
 mod displacement;
 mod draw;
@@ -41,4 +42,4 @@ pub use lists::{PatchKind, Status};
 pub use objects::ObjectDesc;
 pub use options::{Culling, Density, FrameNeeds, FrameOptions, Selection, Spacing, SurfaceMethod, View};
 pub use surface::{MemoryBytes, PreprocessTimes, Preprocessed, Surface, SurfaceDesc, preprocess};
-pub use targets::{NO_SURFACE, Targets};
+pub use targets::{Layers, NO_SURFACE, Targets};

@@ -3,7 +3,7 @@
 use glam::{Affine3A, Vec3};
 use planish_shaders::Object;
 use planish_subdiv::ControlMesh;
-use planish_subdiv::mesh::FaceVaryingInterpolation;
+use planish_subdiv::mesh::{FaceVaryingInterpolation, VertexInterpolation};
 use planish_subdiv::tables::MeshRanges;
 use planish_subdiv::topology::NONE;
 
@@ -12,6 +12,8 @@ const IN_HULL: u32 = 1;
 const HIDES_BACKS: u32 = 2;
 const MIRRORED: u32 = 4;
 const LINEAR_TEX_COORDS: u32 = 8;
+const VERTEX_COLORS: u32 = 16;
+const VARYING_COLORS: u32 = 32;
 
 /// A mesh at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,6 +88,16 @@ pub(crate) fn displace(object: &mut Object, map: u32, bound: f32) {
     object.map = map;
     // What directions and sums of directions round to is far less.
     object.displacement = bound * scale_of(object) * 1.0001;
+}
+
+/// Gives an object its mesh's colours, of which this is known; else it is white.
+pub(crate) fn color(object: &mut Object, interpolation: Option<VertexInterpolation>) {
+    object.flags &= !(VERTEX_COLORS | VARYING_COLORS);
+    object.flags |= match interpolation {
+        None => 0,
+        Some(VertexInterpolation::Vertex) => VERTEX_COLORS,
+        Some(VertexInterpolation::Varying) => VARYING_COLORS,
+    };
 }
 
 /// What an object needs to know of its mesh, besides its place in the tables.

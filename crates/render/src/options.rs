@@ -1,5 +1,7 @@
 //! What a frame is asked to be.
 
+use crate::targets::Layers;
+
 /// How the irregular parts of a surface are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SurfaceMethod {
@@ -96,22 +98,24 @@ pub struct FrameNeeds {
     pub gregory: bool,
     /// Their normals are those of the rational patches, not of their Bezier form.
     pub exact_normals: bool,
+    /// Dumps have colours.
+    pub colors: bool,
 }
 
 impl FrameNeeds {
     /// All that limit surfaces may need.
     pub fn all(spacing: Spacing) -> Self {
-        let (displaced, tex_coords, gregory, exact_normals) = (false, false, false, false);
         Self {
             spacing,
             culls: true,
             placed: true,
             cuts: true,
             watertight: true,
-            displaced,
-            tex_coords,
-            gregory,
-            exact_normals,
+            displaced: false,
+            tex_coords: false,
+            gregory: false,
+            exact_normals: false,
+            colors: false,
         }
     }
 }
@@ -145,6 +149,8 @@ pub enum View {
     Tess,
     /// Parameters of the Ptex face.
     Uv,
+    /// Colours of vertices, as they are.
+    Color,
     /// Shaded, with the edges of all triangles.
     Wire,
 }
@@ -156,16 +162,21 @@ impl View {
             Self::Shaded | Self::Wire => 0,
             Self::Normal => 1,
             // In the colours of the Gregory paper.
-            Self::Patch if method == SurfaceMethod::Gregory => 6,
+            Self::Patch if method == SurfaceMethod::Gregory => 7,
             Self::Patch => 2,
             Self::Level => 3,
             Self::Tess => 4,
             Self::Uv => 5,
+            Self::Color => 6,
         }
     }
 
-    /// Whether the view needs more than the normal.
-    pub fn needs_layers(self) -> bool {
-        !matches!(self, Self::Shaded | Self::Wire)
+    /// What the view needs besides the normal.
+    pub fn layers(self) -> Layers {
+        match self {
+            Self::Shaded | Self::Wire => Layers::None,
+            Self::Color => Layers::GeometryAndColors,
+            _ => Layers::Geometry,
+        }
     }
 }

@@ -10,15 +10,13 @@ use crate::error::Error;
 use crate::lists::PatchKind;
 use crate::options::{Spacing, SurfaceMethod, View};
 use crate::program::stage;
-use crate::targets::{DEPTH_FORMAT, color_formats};
+use crate::targets::{DEPTH_FORMAT, Layers};
 
-/// What a pass's last stage before rasterization makes; the shaders' variants of the same names.
+/// What a pass's last stage before rasterization makes: the shaders' variants `lean`, `layers` and `colors`, and `dump`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Output {
-    /// The normal, for the beauty image alone.
-    Lean,
-    /// What all layers and debug views need.
-    Layers,
+    /// What images with these layers need; with none the normal alone.
+    Image(Layers),
     /// Captured by transform feedback.
     Dump,
 }
@@ -46,6 +44,8 @@ pub(crate) struct PipelineOptions {
     pub tex_coords: bool,
     /// Gregory patches have the normals of the rational patch.
     pub exact_normals: bool,
+    /// Colours are asked for.
+    pub colors: bool,
 }
 
 /// The pipeline of each kind of patch that the method has.
@@ -78,6 +78,7 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
             id: shaders::gregory_patch_lean_tese::SPEC_EXACT_NORMALS,
             bits: u32::from(options.exact_normals),
         },
+        SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_COLORED, bits: u32::from(options.colors) },
     ];
     let view_constant =
         [SpecConstant { id: shaders::surface_lean_frag::SPEC_VIEW, bits: options.view.constant(options.method) }];
@@ -97,13 +98,15 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
         stages.push(stage(&shaders::wire_frag::PROGRAM, &[]));
     } else {
         match options.output {
-            Output::Lean => stages.push(stage(&shaders::surface_lean_frag::PROGRAM, &view_constant)),
-            Output::Layers => stages.push(stage(&shaders::surface_layers_frag::PROGRAM, &view_constant)),
+            Output::Image(layers) => stages.push(stage(fragment_stage(layers), &view_constant)),
             Output::Dump => {}
         }
     }
+    let formats = match options.output {
+        Output::Image(layers) => layers.color_formats(),
+        Output::Dump => Vec::new(),
+    };
     let is_dump = options.output == Output::Dump;
-    let formats = color_formats(options.output == Output::Layers);
     Ok(GraphicsPipeline::new(
         device,
         &GraphicsPipelineDesc {
@@ -114,7 +117,7 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
                 SurfaceMethod::Uniform => Topology::Triangles,
                 _ => Topology::Patches { control_points: 1 },
             },
-            color_formats: if is_dump { &[] } else { &formats },
+            color_formats: &formats,
             depth_format: (!is_dump).then_some(DEPTH_FORMAT),
             depth_test: if is_dump { DepthTest::Off } else { DepthTest::GreaterOrEqual },
             depth_write: !is_dump,
@@ -129,15 +132,17 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
 
 /// The stages before rasterization.
 fn geometry_stages(options: &PipelineOptions, kind: PatchKind) -> Vec<&'static ShaderModule> {
-    let pick = |lean, layers, dump| match options.output {
-        Output::Lean => lean,
-        Output::Layers => layers,
+    let pick = |lean, layers, colors, dump| match options.output {
+        Output::Image(Layers::None) => lean,
+        Output::Image(Layers::Geometry) => layers,
+        Output::Image(Layers::GeometryAndColors) => colors,
         Output::Dump => dump,
     };
     if options.method == SurfaceMethod::Uniform {
         return vec![pick(
             &shaders::uniform_quad_lean_vert::PROGRAM,
             &shaders::uniform_quad_layers_vert::PROGRAM,
+            &shaders::uniform_quad_colors_vert::PROGRAM,
             &shaders::uniform_quad_dump_vert::PROGRAM,
         )];
     }
@@ -146,6 +151,7 @@ fn geometry_stages(options: &PipelineOptions, kind: PatchKind) -> Vec<&'static S
         let evaluation = pick(
             &shaders::gregory_patch_lean_tese::PROGRAM,
             &shaders::gregory_patch_layers_tese::PROGRAM,
+            &shaders::gregory_patch_colors_tese::PROGRAM,
             &shaders::gregory_patch_dump_tese::PROGRAM,
         );
         return vec![list, &shaders::gregory_patch_tesc::PROGRAM, evaluation];
@@ -154,6 +160,7 @@ fn geometry_stages(options: &PipelineOptions, kind: PatchKind) -> Vec<&'static S
         let evaluation = pick(
             &shaders::bspline_patch_lean_tese::PROGRAM,
             &shaders::bspline_patch_layers_tese::PROGRAM,
+            &shaders::bspline_patch_colors_tese::PROGRAM,
             &shaders::bspline_patch_dump_tese::PROGRAM,
         );
         return vec![list, &shaders::bspline_patch_tesc::PROGRAM, evaluation];
@@ -161,9 +168,19 @@ fn geometry_stages(options: &PipelineOptions, kind: PatchKind) -> Vec<&'static S
     let evaluation = pick(
         &shaders::filling_quad_lean_tese::PROGRAM,
         &shaders::filling_quad_layers_tese::PROGRAM,
+        &shaders::filling_quad_colors_tese::PROGRAM,
         &shaders::filling_quad_dump_tese::PROGRAM,
     );
     vec![list, &shaders::filling_quad_tesc::PROGRAM, evaluation]
+}
+
+/// The stage after rasterization.
+fn fragment_stage(layers: Layers) -> &'static ShaderModule {
+    match layers {
+        Layers::None => &shaders::surface_lean_frag::PROGRAM,
+        Layers::Geometry => &shaders::surface_layers_frag::PROGRAM,
+        Layers::GeometryAndColors => &shaders::surface_colors_frag::PROGRAM,
+    }
 }
 
 fn pass_name(options: &PipelineOptions, kind: PatchKind) -> &'static str {

@@ -2,7 +2,7 @@
 
 use planish_gpu::{ComputePipeline, Device, Encoder};
 use planish_shaders::subdivide_comp::{PROGRAM, Push};
-use planish_subdiv::tables::Tables;
+use planish_subdiv::tables::{LevelPoints, Tables};
 
 use crate::edit_points::{EditPoints, edit_points};
 use crate::error::Error;
@@ -56,11 +56,23 @@ impl Subdivide {
 
 /// CPU twin: the points of all levels, bit for bit as the shaders make them where f32 arithmetic is not fused.
 pub fn subdivide(tables: &Tables, cage: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    subdivide_with(tables, cage, |level, points| {
+        edit_points(&tables.edits[level.edits.start as usize..level.edits.end as usize], points);
+    })
+}
+
+/// The same of other values than positions: hierarchical edits do not move them.
+pub(crate) fn subdivide_values(tables: &Tables, cage: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    subdivide_with(tables, cage, |_, _| {})
+}
+
+/// Makes the points of all levels; `edit` changes those of a level before the next one is made of them.
+fn subdivide_with(tables: &Tables, cage: &[[f32; 3]], edit: impl Fn(&LevelPoints, &mut [[f32; 3]])) -> Vec<[f32; 3]> {
     let mut points = cage.to_vec();
     points.resize(tables.point_count() as usize, [0.0; 3]);
     for level in &tables.levels {
         level.dispatches.iter().flat_map(Clone::clone).for_each(|row| make_point(tables, row, &mut points));
-        edit_points(&tables.edits[level.edits.start as usize..level.edits.end as usize], &mut points);
+        edit(level, &mut points);
     }
     points
 }

@@ -13,6 +13,7 @@ use planish_subdiv::tables::{MeshRanges, Tables, TexTree};
 
 use crate::buffers::{FrameBuffers, ListBuffers, TableBuffers};
 use crate::camera::FrameCamera;
+use crate::colors::ColorBuffers;
 use crate::density::frame_input;
 use crate::displacement::{DisplacementDesc, Maps, TexCoordBuffers};
 use crate::error::Error;
@@ -116,6 +117,7 @@ pub struct Surface {
     capacities: Capacities,
     pub(crate) maps: Maps,
     pub(crate) tex_coords: TexCoordBuffers,
+    pub(crate) colors: ColorBuffers,
     marks: Marks,
     density_scales: Vec<f32>,
     sub_pixel_bits: u32,
@@ -156,6 +158,7 @@ impl Surface {
         let frame = FrameBuffers::new(device, &tables, &gpu_objects, &sizes, &marks)?;
         let lists = ListBuffers::new(device, &capacities, &phases, desc.method)?;
         let tex_coords = TexCoordBuffers::of_tables(device, &tables)?;
+        let colors = ColorBuffers::none(device)?;
         times.upload = milliseconds(start);
         let sub_pixel_bits = device.limits().sub_pixel_bits;
         let mut surface = Self {
@@ -171,6 +174,7 @@ impl Surface {
             capacities,
             maps: Maps::default(),
             tex_coords,
+            colors,
             marks,
             density_scales,
             sub_pixel_bits,
@@ -241,6 +245,16 @@ impl Surface {
         self.write_scene()
     }
 
+    /// Gives the meshes, which have these cages, their colours; until then all are white. Frames must be recorded anew then.
+    pub fn set_colors(&mut self, device: &Device, meshes: &[&ControlMesh]) -> Result<(), Error> {
+        self.colors = ColorBuffers::new(device, meshes, &self.meshes, &self.tables)?;
+        for (object, &mesh) in self.objects.iter_mut().zip(&self.object_meshes) {
+            crate::objects::color(object, meshes[mesh].colors.as_ref().map(|colors| colors.interpolation));
+        }
+        self.frame.objects.write(0, &self.objects)?;
+        self.write_scene()
+    }
+
     /// Sets the values of the hierarchical edits that set or move points, for all frames submitted from now on: only
     /// their offsets are uploaded. The edits are the meshes', one mesh after the other in their order, with other values.
     ///
@@ -304,6 +318,9 @@ impl Surface {
             face_tex_coords: address(&self.tex_coords.faces),
             tex_nodes: address(&self.tex_coords.nodes),
             tex_roots: address(&self.tex_coords.roots),
+            point_colors: address(&self.colors.points),
+            limit_colors: address(&self.colors.limits),
+            slot_colors: address(&self.colors.slots),
             limit_seats: address(&tables.limit_seats),
             limit_tangents: address(&frame.limit_tangents),
             densities: address(&frame.densities),

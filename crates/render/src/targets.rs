@@ -1,7 +1,8 @@
 //! The images that a frame is drawn into.
 //!
-//! Four colour targets, which every device has, hold all layers: colour; normal and depth; position and tess factor;
-//! Ptex face, patch with the level in its upper four bits, and u and v as the bits of floats.
+//! Four colour targets, which every device has, hold all layers but one: colour; normal and depth; position and tess factor;
+//! Ptex face, patch with the level in its upper four bits, and u and v as the bits of floats. Colours of vertices have a
+//! fifth.
 
 use planish_gpu::{Clear, ColorTarget, DepthTarget, Device, Format, Image, ImageDesc, RenderTargets};
 
@@ -12,10 +13,33 @@ pub(crate) const DEPTH_FORMAT: Format = Format::Depth32Float;
 /// A pixel without a surface, in the layer of ids.
 pub const NO_SURFACE: u32 = u32::MAX;
 
-/// Formats of the colour targets.
-pub(crate) fn color_formats(layers: bool) -> Vec<Format> {
-    let all = [Format::Rgba16Float, Format::Rgba32Float, Format::Rgba32Float, Format::Rgba32Uint];
-    all[..if layers { 4 } else { 1 }].to_vec()
+/// What images hold besides the beauty image.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Layers {
+    /// Nothing.
+    #[default]
+    None,
+    /// Normal, depth, position, tess factor and ids.
+    Geometry,
+    /// Those, and colours of vertices.
+    GeometryAndColors,
+}
+
+impl Layers {
+    /// Number of colour targets.
+    pub(crate) fn target_count(self) -> usize {
+        match self {
+            Self::None => 1,
+            Self::Geometry => 4,
+            Self::GeometryAndColors => 5,
+        }
+    }
+
+    /// Formats of the colour targets.
+    pub(crate) fn color_formats(self) -> Vec<Format> {
+        let floats = Format::Rgba32Float;
+        [Format::Rgba16Float, floats, floats, Format::Rgba32Uint, floats][..self.target_count()].to_vec()
+    }
 }
 
 /// Images of one size.
@@ -26,21 +50,21 @@ pub struct Targets {
 }
 
 impl Targets {
-    /// Makes them; `layers` adds normal, depth, position, tess factor and ids to the colour.
-    pub fn new(device: &Device, size: [u32; 2], layers: bool) -> Result<Self, Error> {
+    /// Makes them.
+    pub fn new(device: &Device, size: [u32; 2], layers: Layers) -> Result<Self, Error> {
         let image = |name: &str, format| Image::new(device, &ImageDesc { name, format, extent: size });
-        let names = ["colour", "normal and depth", "position and factor", "ids"];
+        let names = ["colour", "normal and depth", "position and factor", "ids", "colours of vertices"];
         let colors = names
             .iter()
-            .zip(color_formats(layers))
+            .zip(layers.color_formats())
             .map(|(name, format)| image(name, format))
             .collect::<Result<Vec<_>, _>>()?;
         Ok(Self { colors, depth: image("depth", DEPTH_FORMAT)?, size })
     }
 
-    /// Whether there is more than colour.
-    pub fn has_layers(&self) -> bool {
-        self.colors.len() > 1
+    /// Whether there are colours of vertices.
+    pub fn has_vertex_colors(&self) -> bool {
+        self.colors.len() == Layers::GeometryAndColors.target_count()
     }
 
     /// Width and height in pixels.
@@ -53,7 +77,8 @@ impl Targets {
         &self.colors[0]
     }
 
-    /// The images of the layers: normal and depth, position and tess factor (four floats each), ids (four words).
+    /// The images of the layers: normal and depth, position and tess factor (four floats each), ids (four words), colours of
+    /// vertices (four floats, the last being 1 on a surface).
     pub fn layers(&self) -> &[Image] {
         &self.colors[1..]
     }
@@ -64,8 +89,8 @@ impl Targets {
     }
 
     pub(crate) fn render<R>(&self, f: impl FnOnce(&RenderTargets<'_>) -> R) -> R {
-        let clears =
-            [Clear::Float([0.0; 4]), Clear::Float([0.0; 4]), Clear::Float([0.0; 4]), Clear::Uint([NO_SURFACE; 4])];
+        let black = Clear::Float([0.0; 4]);
+        let clears = [black, black, black, Clear::Uint([NO_SURFACE; 4]), black];
         let colors: Vec<_> =
             self.colors.iter().zip(clears).map(|(image, clear)| ColorTarget { image, clear }).collect();
         let depth = Some(DepthTarget { image: &self.depth, clear: Some(0.0) });

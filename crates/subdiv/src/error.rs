@@ -75,6 +75,20 @@ pub enum Error {
         /// The vertex.
         vertex: u32,
     },
+    /// There are colours, but not one a vertex.
+    #[error("{found} colours are given for {expected} vertices; expected one a vertex, or none")]
+    ColorCount {
+        /// Number of vertices.
+        expected: u64,
+        /// Colours found.
+        found: u64,
+    },
+    /// A colour is NaN, infinite, or so large that sums of it leave the range of floats.
+    #[error("vertex {vertex} (from 0) has a colour that is not finite, or beyond {max:e}", max = crate::mesh::MAX_COORDINATE)]
+    Color {
+        /// The vertex.
+        vertex: u32,
+    },
     /// A face-varying channel has an index out of range, or a value that is no usable number.
     #[error("face-varying channel {channel} (from 0): {fault}")]
     FaceVarying {

@@ -130,6 +130,26 @@ pub struct FaceVaryingChannel {
     pub indices: Vec<u32>,
 }
 
+/// How values of vertices become values of the surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum VertexInterpolation {
+    /// By the rules of positions, boundaries, creases and all: the limit surface of a cage with these positions.
+    #[default]
+    Vertex,
+    /// Bilinear in each Ptex face. The middle of a face of other than four sides has the mean of its vertices, that of an
+    /// edge the mean of its two.
+    Varying,
+}
+
+/// Colours of vertices. They do not animate, and hierarchical edits of positions leave them alone.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct VertexColors {
+    /// Red, green and blue, scene-linear, of any size and sign; one a vertex.
+    pub values: Vec<[f32; 3]>,
+    /// What lies between vertices.
+    pub interpolation: VertexInterpolation,
+}
+
 /// A Catmull-Clark cage. Plain data; [`ControlMesh::validate`] says whether it can be subdivided.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ControlMesh {
@@ -151,6 +171,8 @@ pub struct ControlMesh {
     pub density: Vec<f32>,
     /// Channels of values at the corners of faces. They do not animate.
     pub face_varying: Vec<FaceVaryingChannel>,
+    /// Colours of the vertices; without them the surface is white.
+    pub colors: Option<VertexColors>,
     /// Options.
     pub options: MeshOptions,
 }
@@ -179,7 +201,7 @@ impl ControlMesh {
     }
 
     /// Checks what refinement relies on: indices in range, at least three different vertices a face, finite positions
-    /// and densities, face-varying values that are there and finite, edits of what exists.
+    /// and densities, face-varying values and colours that are there and finite, edits of what exists.
     pub fn validate(&self) -> Result<(), Error> {
         if self.face_sizes.is_empty() {
             return Err(Error::Empty);
@@ -231,7 +253,23 @@ impl ControlMesh {
         for (number, channel) in (0..).zip(&self.face_varying) {
             channel.validate(found).map_err(|fault| Error::FaceVarying { channel: number, fault })?;
         }
+        if let Some(colors) = &self.colors {
+            colors.validate(self.positions.len())?;
+        }
         crate::edits::validate(self)
+    }
+}
+
+impl VertexColors {
+    /// What is wrong with the colours of a mesh with so many vertices.
+    fn validate(&self, vertex_count: usize) -> Result<(), Error> {
+        if self.values.len() != vertex_count {
+            return Err(Error::ColorCount { expected: vertex_count as u64, found: self.values.len() as u64 });
+        }
+        match self.values.iter().position(|color| !color.iter().all(|c| c.abs() <= MAX_COORDINATE)) {
+            None => Ok(()),
+            Some(vertex) => Err(Error::Color { vertex: vertex as u32 }),
+        }
     }
 }
 

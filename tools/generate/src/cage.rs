@@ -12,6 +12,8 @@ const DECIMALS: usize = 5;
 pub struct Cage {
     /// One position a vertex.
     pub positions: Vec<DVec3>,
+    /// One colour a vertex, from 0 to 1 each; none if no vertex has one.
+    pub colors: Vec<DVec3>,
     /// Vertex indices from 0 of each face, counter-clockwise seen from outside.
     pub faces: Vec<Vec<u32>>,
     /// Texture coordinates; none if no corner has one.
@@ -80,12 +82,20 @@ impl Cage {
         welded
     }
 
+    /// The mesh with a colour at each vertex by its position.
+    pub fn colored(mut self, color: impl Fn(DVec3) -> DVec3) -> Self {
+        self.colors = self.positions.iter().map(|&position| color(position)).collect();
+        self
+    }
+
     /// The text of an OBJ file: a comment, then vertices, faces and tags.
     pub fn to_obj(&self, comment: &str) -> String {
         let mut text = format!("# {comment} Made by planish-generate.\n");
-        for position in &self.positions {
-            let [x, y, z] = position.to_array().map(decimal);
-            writeln!(text, "v {x} {y} {z}").expect("writing to a string cannot fail");
+        for (vertex, position) in self.positions.iter().enumerate() {
+            let values =
+                position.to_array().into_iter().chain(self.colors.get(vertex).into_iter().flat_map(DVec3::to_array));
+            let values: Vec<String> = values.map(decimal).collect();
+            writeln!(text, "v {}", values.join(" ")).expect("writing to a string cannot fail");
         }
         for uv in &self.uvs {
             let [u, v] = uv.to_array().map(decimal);

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use planish_gpu::Device;
-use planish_render::{Density, FrameNeeds, SurfaceDesc, SurfaceMethod, View};
+use planish_render::{Density, FrameNeeds, Layers, SurfaceDesc, SurfaceMethod, View};
 use planish_subdiv::refine::CreasePatches;
 use serde::Serialize;
 
@@ -61,7 +61,7 @@ pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) ->
     };
     plan.cull(arguments.no_cull);
     let mut session = Session::new(device, cage, &plan, bench.console)?;
-    let images = session.images(View::Shaded, false)?;
+    let images = session.images(View::Shaded, Layers::None)?;
     let mut cage_motion = CageMotion::new(cage);
     let camera = session.camera;
     session.draw(&images, &camera, &cage_motion.positions(0))?;

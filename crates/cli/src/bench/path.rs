@@ -3,7 +3,7 @@
 
 use anyhow::{Result, bail};
 use planish_gpu::Device;
-use planish_render::{Density, SurfaceMethod, View};
+use planish_render::{Density, Layers, SurfaceMethod, View};
 use planish_scene::Camera;
 use planish_subdiv::refine::CreasePatches;
 use serde::Serialize;
@@ -114,7 +114,7 @@ impl Method {
         let mut plan = Plan::of(cage, &setting, cameras)?;
         plan.cull(arguments.no_cull);
         let mut session = Session::new(device, cage, &plan, bench.console)?;
-        let images = session.images(View::Shaded, false)?;
+        let images = session.images(View::Shaded, Layers::None)?;
         let camera = session.camera;
         session.draw(&images, &camera, &cage.positions())?;
         Ok(Self { session, images })

@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use glam::{Mat4, Vec3};
+use planish_render::emit::Emitted;
 use planish_render::{Culling, Density, Error, FrameCamera, FrameOptions, PatchKind, Selection, Spacing};
-use planish_shaders::DrawEntry;
 use planish_subdiv::eval::Evaluator;
 use planish_subdiv::patch::PatchInfo;
 use planish_subdiv::topology::Location;
@@ -84,7 +84,7 @@ fn scales(kind: u32, count: usize, largest: f32, random: &mut Random) -> Vec<f32
 }
 
 /// The patches that lists draw of an object's Ptex face: those that are cut once, all of their pieces being there.
-fn drawn_patches(world: &World, entries: &[Vec<DrawEntry>; 4]) -> HashMap<(u32, u32), Vec<Location>> {
+fn drawn_patches(world: &World, entries: &Emitted) -> HashMap<(u32, u32), Vec<Location>> {
     let tables = world.surface.tables();
     let mut drawn: HashMap<(u32, u32), Vec<Location>> = HashMap::new();
     let mut add = |object: u32, info: &PatchInfo| {
@@ -140,7 +140,7 @@ fn surface_areas(world: &World) -> Vec<Vec<f64>> {
     world.meshes.iter().map(area).collect()
 }
 
-fn check_coverage(world: &World, entries: &[Vec<DrawEntry>; 4], expected: &[Vec<f64>], named: &str) {
+fn check_coverage(world: &World, entries: &Emitted, expected: &[Vec<f64>], named: &str) {
     let mut drawn = drawn_patches(world, entries);
     for (index, object) in world.objects.iter().enumerate() {
         for (face, &expected) in expected[object.mesh].iter().enumerate() {
@@ -152,7 +152,7 @@ fn check_coverage(world: &World, entries: &[Vec<DrawEntry>; 4], expected: &[Vec<
 }
 
 /// Triangles that are not too many to draw.
-fn triangle_count(entries: &[Vec<DrawEntry>; 4]) -> u64 {
+fn triangle_count(entries: &Emitted) -> u64 {
     entries.iter().flatten().map(|entry| u64::from(entry.triangles)).sum()
 }
 

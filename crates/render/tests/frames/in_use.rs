@@ -1,7 +1,7 @@
 //! How much is computed, against the least that what is drawn needs.
 
+use planish_render::emit::Emitted;
 use planish_render::{Culling, Density, FrameOptions, PatchKind, Selection, Spacing};
-use planish_shaders::DrawEntry;
 use planish_subdiv::tables::Tables;
 use planish_subdiv::topology::NONE;
 
@@ -40,7 +40,7 @@ fn control_points(points: &[u32; 16], boundary: u8) -> impl Iterator<Item = u32>
 }
 
 /// The least number of points and limit points from which patches can be drawn.
-fn least(tables: &Tables, entries: &[Vec<DrawEntry>; 4]) -> u64 {
+fn least(tables: &Tables, entries: &Emitted) -> u64 {
     let mut points = vec![false; tables.point_count() as usize];
     let mut limits = vec![false; tables.limit_point_count() as usize];
     for kind in [PatchKind::Regular, PatchKind::Transition, PatchKind::Cut] {

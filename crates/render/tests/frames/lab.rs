@@ -3,12 +3,11 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, DeviceOptions, Encoder, Image, PipelineStatistics};
-use planish_render::lists::KIND_COUNT;
+use planish_render::emit::Emitted;
 use planish_render::{
-    CapturedVertex, DrawOptions, DrawPasses, DumpPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, PatchKind,
-    Spacing, Status, Surface, SurfaceDesc, Targets, View,
+    CapturedVertex, DrawOptions, DrawPasses, DumpPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, Layers,
+    PatchKind, Spacing, Status, Surface, SurfaceDesc, Targets, View,
 };
-use planish_shaders::DrawEntry;
 
 /// All spacings.
 pub const SPACINGS: [Spacing; 3] = [Spacing::Equal, Spacing::FractionalOdd, Spacing::FractionalEven];
@@ -118,7 +117,7 @@ impl Lab {
     }
 
     /// Entries of each kind that the last frame listed, in ascending order.
-    pub fn entries(&self, surface: &Surface) -> [Vec<DrawEntry>; KIND_COUNT] {
+    pub fn entries(&self, surface: &Surface) -> Emitted {
         self.unsorted_entries(surface).map(|mut entries| {
             entries.sort_by_key(|entry| (entry.object, entry.place, entry.flags));
             entries
@@ -126,7 +125,7 @@ impl Lab {
     }
 
     /// Entries of each kind that the last frame listed, in their order.
-    pub fn unsorted_entries(&self, surface: &Surface) -> [Vec<DrawEntry>; KIND_COUNT] {
+    pub fn unsorted_entries(&self, surface: &Surface) -> Emitted {
         surface.status().expect("status").draw_heads.map(|head| {
             let range = head.first..head.first + head.count.min(head.capacity);
             surface.download_entries(&self.device, range).expect("entries")
@@ -167,12 +166,12 @@ pub struct Easel {
 
 impl Easel {
     pub fn new(lab: &Lab, spacing: Spacing, cull_back: bool, size: [u32; 2]) -> Self {
-        let options = DrawOptions { view: View::Shaded, layers: true, cull_back };
+        let options = DrawOptions { view: View::Shaded, layers: Layers::Geometry, cull_back };
         let desc = SurfaceDesc::default();
         Self {
             spacing,
             passes: DrawPasses::new(&lab.device, &desc, lab.needs(spacing), &options).expect("pipelines"),
-            targets: Targets::new(&lab.device, size, true).expect("images"),
+            targets: Targets::new(&lab.device, size, Layers::Geometry).expect("images"),
         }
     }
 

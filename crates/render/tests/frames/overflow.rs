@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use planish_render::emit::Emitted;
 use planish_render::lists::{LIST_ACTIVE, LIST_CUT, LIST_LEAVES, LIST_PATCHES};
 use planish_render::{Culling, Density, FrameOptions, Selection, Spacing, Status};
 
@@ -23,7 +24,7 @@ fn frames_of_short_lists_draw_a_part_tell_what_they_need_and_are_right_after_gro
     let easel = Easel::new(&lab, spacing, false, SIZE);
     let mut room = World::of_objects(&lab.device, 4, None);
     let camera = room.cameras(SIZE)[0];
-    let all = |entries: &[Vec<planish_shaders::DrawEntry>; 4]| -> HashSet<(u32, u32)> {
+    let all = |entries: &Emitted| -> HashSet<(u32, u32)> {
         entries.iter().flatten().map(|entry| (entry.object, entry.place)).collect()
     };
     for (density, culling) in [(Density::EdgePixels(0.5), Culling::Off), (Density::Tess(90.0), Culling::Unseen)] {

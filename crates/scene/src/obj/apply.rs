@@ -3,7 +3,7 @@ use std::collections::HashSet;
 
 use planish_subdiv::mesh::{
     BoundaryInterpolation, ControlMesh, Corner, Crease, Creasing, FaceVaryingInterpolation, INFINITE_SHARPNESS,
-    TriangleSubdivision,
+    TriangleSubdivision, VertexInterpolation,
 };
 
 use super::edits;
@@ -37,6 +37,7 @@ pub fn apply(tags: &[Tag], faces: &FaceMap, mesh: &mut ControlMesh, warnings: &m
             TagKind::VertexEdit | TagKind::EdgeEdit => edits::component_edits(tag, faces, mesh, warnings)?,
             TagKind::FaceEdit => edits::face_edits(tag, faces, mesh, warnings)?,
             TagKind::Density => densities(tag, mesh)?,
+            TagKind::ColorInterpolation => color_interpolation(tag, mesh, warnings)?,
         }
     }
     drop_creases_without_edge(mesh, &crease_lines, warnings);
@@ -101,6 +102,20 @@ fn densities(tag: &Tag, mesh: &mut ControlMesh) -> Result<(), Fault> {
             return Err(Fault::at(tag.line, format!("density {value}"), "0 or more, finite in 32-bit floating point"));
         }
         mesh.density[vertex as usize] = density;
+    }
+    Ok(())
+}
+
+/// `colorinterpolation`: what lies between the colours of vertices.
+fn color_interpolation(tag: &Tag, mesh: &mut ControlMesh, warnings: &mut Warnings) -> Result<(), Fault> {
+    let interpolation = match option_value(tag)? {
+        0 => VertexInterpolation::Vertex,
+        1 => VertexInterpolation::Varying,
+        other => return Err(Fault::at(tag.line, format!("colour interpolation {other}"), "0 or 1")),
+    };
+    match &mut mesh.colors {
+        Some(colors) => colors.interpolation = interpolation,
+        None => warnings.push(Some(tag.line), "colour interpolation, but no vertex has a colour: ignored"),
     }
     Ok(())
 }

@@ -1,5 +1,5 @@
 //! The OBJ reader: `v vt vn f o g s usemtl mtllib`, and the `t` lines with which OpenSubdiv's test shapes say creases,
-//! corners, holes, options, hierarchical edits and, a tag of ours, densities.
+//! corners, holes, options, hierarchical edits and, tags of ours, densities and the interpolation of colours.
 //!
 //! One file is one mesh: groups, objects and materials do not split it. What the reader does not know it ignores.
 //! Faces and tags may come before the vertices and faces that they name, so indices are checked at the end of the file.
@@ -7,12 +7,14 @@
 //! | module | idea |
 //! |---|---|
 //! | `lines` | bytes to logical lines and tokens |
+//! | `colors` | colours of `v` lines |
 //! | `faces` | `f` lines, and what is checked of them at the end |
 //! | `tags` | `t` lines to names and values |
 //! | `apply` | tags to creases, corners, holes, densities and options |
 //! | `edits` | tags to hierarchical edits |
 //! | `warnings` | a bounded list of warnings |
 mod apply;
+mod colors;
 mod edits;
 mod faces;
 mod lines;
@@ -26,6 +28,7 @@ use planish_subdiv::mesh::{ControlMesh, FaceVaryingChannel, MAX_ELEMENTS};
 
 use crate::error::Fault;
 use crate::{LoadOptions, Mesh, Warning};
+use colors::Colors;
 use faces::Faces;
 use lines::{Line, Lines, Tokens, number};
 use tags::Tag;
@@ -61,6 +64,7 @@ fn refuse_zero_bytes(bytes: &[u8]) -> Result<(), Fault> {
 #[derive(Default)]
 struct Reader {
     positions: Vec<[f32; 3]>,
+    colors: Colors,
     uvs: Vec<[f32; 2]>,
     faces: Faces,
     tags: Vec<Tag>,
@@ -72,7 +76,10 @@ impl Reader {
     fn statement(&mut self, line: &Line) -> Result<(), Fault> {
         let mut tokens = line.tokens();
         match tokens.next() {
-            Some(b"v") => self.positions.push(coordinates(line.number, &mut tokens, "v", 3)?),
+            Some(b"v") => {
+                self.positions.push(coordinates(line.number, &mut tokens, "v", 3)?);
+                self.colors.read(line.number, tokens, self.positions.len())?;
+            }
             Some(b"vt") => self.uvs.push(coordinates(line.number, &mut tokens, "vt", 1)?),
             Some(b"f") => self.faces.read(line.number, tokens, self.positions.len(), self.uvs.len())?,
             Some(b"t") => self.tags.extend(Tag::read(line.number, tokens, &mut self.warnings)?),
@@ -100,11 +107,13 @@ impl Reader {
             return Err(Fault::whole("no faces", "lines `f 1 2 3 ..`"));
         }
         let face_varying = self.uv_channel()?.into_iter().collect();
+        let colors = self.colors.finish(self.positions.len(), &mut self.warnings);
         let mut control_mesh = ControlMesh {
             positions: self.positions,
             face_sizes: self.faces.sizes,
             face_vertices: self.faces.vertices,
             face_varying,
+            colors,
             ..ControlMesh::default()
         };
         apply::apply(&self.tags, &face_map, &mut control_mesh, &mut self.warnings)?;
@@ -143,13 +152,19 @@ fn coordinates<const N: usize>(line: u32, tokens: &mut Tokens, keyword: &str, le
             }
             return Err(Fault::at(line, format!("{keyword} with {index} coordinates"), format!("{least} or more")));
         };
-        let parsed = number(token).ok_or_else(|| Fault::at(line, quoted(token), "a number"))?;
-        *value = parsed as f32;
-        if !value.is_finite() {
-            return Err(Fault::at(line, quoted(token), "a finite coordinate within 32-bit floating point"));
-        }
+        *value = finite(line, token, "coordinate")?;
     }
     Ok(values)
+}
+
+/// A number that is finite as a 32-bit float; `what` it is.
+fn finite(line: u32, token: &[u8], what: &str) -> Result<f32, Fault> {
+    let parsed = number(token).ok_or_else(|| Fault::at(line, quoted(token), "a number"))?;
+    let value = parsed as f32;
+    if value.is_finite() {
+        return Ok(value);
+    }
+    Err(Fault::at(line, quoted(token), format!("a finite {what} within 32-bit floating point")))
 }
 
 fn refuse_too_many(count: usize, what: &str) -> Result<(), Fault> {

@@ -17,6 +17,7 @@ pub enum TagKind {
     EdgeEdit,
     FaceEdit,
     Density,
+    ColorInterpolation,
 }
 
 impl TagKind {
@@ -33,6 +34,7 @@ impl TagKind {
             b"edgeedit" => Self::EdgeEdit,
             b"faceedit" => Self::FaceEdit,
             b"density" => Self::Density,
+            b"colorinterpolation" => Self::ColorInterpolation,
             _ => return None,
         })
     }

@@ -1,4 +1,5 @@
 //! The reader from outside: one module an aspect, each test named after what it claims.
+mod colors;
 mod common;
 mod edits;
 mod errors;

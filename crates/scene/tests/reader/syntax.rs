@@ -98,9 +98,10 @@ fn texture_coordinates_are_indexed_apart_from_vertices() {
 }
 
 #[test]
-fn components_after_the_third_are_ignored() {
-    let text = "v 0 0 0 1\nv 1 0 0 0.5 0.5 0.5\nv 0 1 0 x\nf 1 2 3\n";
-    assert_eq!(mesh(text).control_mesh.positions[1], [1.0, 0.0, 0.0]);
+fn one_two_or_more_than_three_components_after_the_third_are_ignored() {
+    let text = "v 0 0 0 1\nv 1 0 0 0.5 y\nv 0 1 0 x\nv 0 0 1 1 1 1 1\nf 1 2 3\n";
+    let mesh = mesh(text).control_mesh;
+    assert_eq!((mesh.positions[1], mesh.colors), ([1.0, 0.0, 0.0], None));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use planish_subdiv::Error;
 use planish_subdiv::eval::Evaluator;
-use planish_subdiv::mesh::{BoundaryInterpolation, ControlMesh, Crease, Creasing, TriangleSubdivision};
+use planish_subdiv::mesh::{BoundaryInterpolation, ControlMesh, Crease, Creasing, TriangleSubdivision, VertexColors};
 use planish_subdiv::patch::cubic_basis;
 use planish_subdiv::refine::{RefineOptions, Refinement};
 use planish_subdiv::selection::{PatchCounts, deepest_cut};
@@ -192,6 +192,21 @@ fn evaluator_reproduces_a_bicubic_sheet() {
         }
     }
     assert!(distance(evaluator.evaluate(12, 0.3, 0.8).unwrap().position, want) < 1e-14);
+}
+
+#[test]
+fn colours_are_none_or_one_a_vertex_and_finite() {
+    let with = |values: Vec<[f32; 3]>| {
+        ControlMesh { colors: Some(VertexColors { values, ..VertexColors::default() }), ..cube() }.validate()
+    };
+    assert_eq!(with(vec![[-2.0, 0.0, 1e30]; 8]), Ok(()));
+    assert_eq!(with(vec![[0.0; 3]; 9]), Err(Error::ColorCount { expected: 8, found: 9 }));
+    assert_eq!(with(Vec::new()), Err(Error::ColorCount { expected: 8, found: 0 }));
+    for bad in [f32::NAN, f32::INFINITY, -1e37] {
+        let mut values = vec![[1.0; 3]; 8];
+        values[5][2] = bad;
+        assert_eq!(with(values), Err(Error::Color { vertex: 5 }));
+    }
 }
 
 #[test]

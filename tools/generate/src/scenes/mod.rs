@@ -1,6 +1,7 @@
 //! What stands in `scenes/`: small meshes that each show one feature, the hero, and scenes of several of them.
 mod boundaries;
 mod chaikin;
+mod colors;
 mod corners;
 mod creases;
 mod degenerate;
@@ -59,6 +60,7 @@ pub fn all() -> Vec<SceneFile> {
         degenerate::files(),
         edits::files(),
         uvs::files(),
+        colors::files(),
     ];
     features.into_iter().flatten().collect()
 }
