@@ -2,8 +2,8 @@
 //! Shader: `glsl/limit.comp`.
 
 use planish_gpu::{ComputePipeline, Device, Encoder};
-use planish_shaders::LimitPoint;
 use planish_shaders::limit_comp::{PROGRAM, Push};
+use planish_shaders::{LimitPoint, LimitTangents};
 use planish_subdiv::tables::Tables;
 
 use crate::error::Error;
@@ -47,27 +47,29 @@ impl Limit {
 
 /// CPU twin: the limit points from the points of all levels, bit for bit as the shader makes them.
 pub fn limit(tables: &Tables, points: &[[f32; 3]]) -> Vec<LimitPoint> {
-    tables
-        .limits
-        .rows
-        .iter()
-        .map(|row| {
-            let indices = &tables.limits.indices[row.first_index as usize..][..row.count as usize];
-            let weights = &tables.limits.weights[row.first_weight as usize..][..row.count as usize];
-            let origin = points[indices[0] as usize];
-            let mut sums = [[0.0_f32; 3]; 3];
-            for (&index, weight) in indices.iter().zip(weights).skip(1) {
-                let point = points[index as usize];
-                for (sum, w) in sums.iter_mut().zip(weight) {
-                    for c in 0..3 {
-                        sum[c] += w * (point[c] - origin[c]);
-                    }
+    limit_with_tangents(tables, points).0
+}
+
+/// The same, and their tangents.
+pub fn limit_with_tangents(tables: &Tables, points: &[[f32; 3]]) -> (Vec<LimitPoint>, Vec<LimitTangents>) {
+    let made = tables.limits.rows.iter().map(|row| {
+        let indices = &tables.limits.indices[row.first_index as usize..][..row.count as usize];
+        let weights = &tables.limits.weights[row.first_weight as usize..][..row.count as usize];
+        let origin = points[indices[0] as usize];
+        let mut sums = [[0.0_f32; 3]; 3];
+        for (&index, weight) in indices.iter().zip(weights).skip(1) {
+            let point = points[index as usize];
+            for (sum, w) in sums.iter_mut().zip(weight) {
+                for c in 0..3 {
+                    sum[c] += w * (point[c] - origin[c]);
                 }
             }
-            let [position, a, b] = sums;
-            LimitPoint { position: std::array::from_fn(|c| origin[c] + position[c]), normal: unit_normal(a, b) }
-        })
-        .collect()
+        }
+        let [position, a, b] = sums;
+        let position = std::array::from_fn(|c| origin[c] + position[c]);
+        (LimitPoint { position, normal: unit_normal(a, b) }, LimitTangents { a, b })
+    });
+    made.unzip()
 }
 
 /// `scaled` of `glsl/shared/bspline.glsl`.

@@ -417,6 +417,11 @@ impl Surface {
         Ok(device.download(&self.frame.limits, 0, self.tables.limit_point_count() as usize)?)
     }
 
+    /// The spokes of limit points as the last frame left them; waits for the device. For tests.
+    pub fn download_spokes(&self, device: &Device) -> Result<Vec<shaders::SpokePoint>, Error> {
+        Ok(device.download(&self.frame.spoke_points, 0, self.tables.gregory.spokes.len())?)
+    }
+
     /// Densities of all objects' slots as the last frame left them; waits for the device.
     pub fn download_densities(&self, device: &Device) -> Result<Vec<shaders::SlotDensity>, Error> {
         let count = self.frame.densities.size() as usize / size_of::<shaders::SlotDensity>();

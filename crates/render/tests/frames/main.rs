@@ -3,6 +3,7 @@
 
 mod culling;
 mod fuzz;
+mod gregory;
 mod in_use;
 mod inside;
 mod kernels;

@@ -9,9 +9,10 @@ use std::env;
 use std::path::Path;
 
 use glam::{Affine3A, Quat, Vec3};
+use planish_render::lists::KIND_COUNT;
 use planish_render::{
     CapturedVertex, Culling, Density, DumpPasses, FrameCamera, FrameNeeds, FrameOptions, ObjectDesc, PatchKind,
-    Selection, Spacing, SurfaceDesc,
+    Selection, Spacing, SurfaceDesc, SurfaceMethod,
 };
 use planish_scene::displacement::{DisplacementLayout, DisplacementMap, DisplacementRequest, load_displacement};
 use planish_subdiv::ControlMesh;
@@ -36,6 +37,8 @@ struct Fineness {
 const MODERATE: Fineness = Fineness { pixels: [1.0, 12.0], triangles: 4000, triangles_a_face: 40 };
 /// So fine that a patch that is denser than the others is cut.
 const FINE: Fineness = Fineness { pixels: [0.02, 0.1], triangles: 50_000, triangles_a_face: 0 };
+/// The same for faces that are thirds of others, or whole faces of small cages.
+const FINEST: Fineness = Fineness { triangles: 160_000, ..FINE };
 /// Isolation ends here: the finest patches have factors above 1, too.
 const LEVEL: u32 = 4;
 /// How far a texel displaces, over the diagonal of the bounding box.
@@ -46,6 +49,8 @@ const SKIPPED: [(&str, &str); 2] =
 
 /// Of regular faces, with texture coordinates and without, with a sharp edge: one for each spacing.
 const CUT: [&str; 3] = ["torus_32", "uv_torus", "crease_infinite"];
+/// Of Gregory patches: quads, and triangles beside quads.
+const CUT_GREGORY: [&str; 3] = ["cube", "mixed_triangles_quads", "tetrahedron"];
 
 /// What must have the same bits for corners to be one point. Of zeros the sign does not count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -230,28 +235,37 @@ struct Bench {
     dumps: usize,
     triangles: usize,
     /// Patches and pieces drawn, of each kind.
-    entries: [usize; 4],
+    entries: [usize; KIND_COUNT],
     faults: Vec<String>,
 }
 
 impl Bench {
     fn new(lab: Lab, crease_patches: CreasePatches) -> Self {
-        let displaced = lab.needs(Spacing::Equal).displaced;
-        let desc = SurfaceDesc { crease_patches, displaced, ..SurfaceDesc::default() };
+        let FrameNeeds { displaced, gregory, .. } = *lab.needs(Spacing::Equal);
+        let method = if gregory { SurfaceMethod::Gregory } else { SurfaceMethod::default() };
+        let desc = SurfaceDesc { method, crease_patches, displaced, ..SurfaceDesc::default() };
         Self {
             lab,
             desc,
             passes: [const { OnceCell::new() }; 3],
             dumps: 0,
             triangles: 0,
-            entries: [0; 4],
+            entries: [0; KIND_COUNT],
             faults: Vec::new(),
         }
     }
 
+    fn is_gregory(&self) -> bool {
+        self.desc.method == SurfaceMethod::Gregory
+    }
+
     fn world(&self, name: &str, meshes: Vec<ControlMesh>, objects: Vec<ObjectDesc>, random: &mut Random) -> World {
         // Large models are detailed enough without irregularities of their own.
-        let level = if meshes[0].face_sizes.len() > 1000 { 2 } else { LEVEL };
+        let level = match meshes[0].face_sizes.len() {
+            _ if self.is_gregory() => 0,
+            1001.. => 2,
+            _ => LEVEL,
+        };
         let desc = SurfaceDesc { level, ..self.desc };
         let mut world = World::with_desc(&self.lab.device, name, meshes, objects, desc, None);
         if self.desc.displaced {
@@ -305,7 +319,9 @@ impl Bench {
 
     /// Checks a world from as many random eyes as are asked for, with these spacings and all selections.
     fn check(&mut self, world: &mut World, spacings: &[Spacing], fineness: Fineness, random: &mut Random) {
-        let ways = spacings.iter().flat_map(|spacing| SELECTIONS.map(|selection| (*spacing, selection)));
+        // Gregory patches are not selected.
+        let selections = if self.is_gregory() { &SELECTIONS[..1] } else { &SELECTIONS[..] };
+        let ways = spacings.iter().flat_map(|spacing| selections.iter().map(|selection| (*spacing, *selection)));
         for way in ways.flat_map(|way| std::iter::repeat_n(way, camera_count())) {
             let (named, of_objects) = self.dump(world, way, fineness, random);
             for (index, vertices) in of_objects.iter().enumerate() {
@@ -336,16 +352,21 @@ impl Bench {
 
 /// The closed meshes, each by itself; some with a face so dense that it is cut; and instances.
 fn check_all(mut bench: Bench) {
-    let meshes = closed_meshes();
+    let mut meshes = closed_meshes();
+    if bench.is_gregory() {
+        meshes.retain(|(_, mesh)| mesh.edits.is_empty());
+    }
+    let cut = if bench.is_gregory() { CUT_GREGORY } else { CUT };
     for (name, mesh) in meshes {
         let mut random = Random::named(&name);
-        if let Some(turn) = CUT.iter().position(|cut| *cut == name) {
+        if let Some(turn) = cut.iter().position(|cut| *cut == name) {
             // Beside a dense face patches are cut that have edges of one segment.
             let mut uneven = mesh.clone();
             uneven.density = vec![0.0; mesh.positions.len()];
-            mesh.face_vertices[..4].iter().for_each(|&corner| uneven.density[corner as usize] = 1.0);
+            dense_face(&mesh).iter().for_each(|&corner| uneven.density[corner as usize] = 1.0);
             let mut world = bench.world(&name, vec![uneven], vec![ObjectDesc::identity(0)], &mut random);
-            bench.check(&mut world, &SPACINGS[turn..=turn], FINE, &mut random);
+            let fineness = if bench.is_gregory() { FINEST } else { FINE };
+            bench.check(&mut world, &SPACINGS[turn..=turn], fineness, &mut random);
         }
         let mut world = bench.world(&name, vec![mesh], vec![ObjectDesc::identity(0)], &mut random);
         bench.check(&mut world, &SPACINGS, MODERATE, &mut random);
@@ -359,10 +380,19 @@ fn check_all(mut bench: Bench) {
     }
     bench.finish();
     if is_wanted("") {
-        for kind in PatchKind::ALL {
+        // Closed meshes of regular faces alone are few, and none of them is cut.
+        let is_rare = |kind: PatchKind| bench.is_gregory() && kind == PatchKind::Cut;
+        for &kind in PatchKind::of_method(bench.desc.method).iter().filter(|&&kind| !is_rare(kind)) {
             assert!(bench.entries[kind as usize] > 50, "{kind:?}: {:?}", bench.entries);
         }
     }
+}
+
+/// The corners of a triangle of a mesh, if it has one, else of a quad.
+fn dense_face(mesh: &ControlMesh) -> &[u32] {
+    let triangle = mesh.face_sizes.iter().position(|&sides| sides == 3).unwrap_or(0);
+    let first: u32 = mesh.face_sizes[..triangle].iter().sum();
+    &mesh.face_vertices[first as usize..][..mesh.face_sizes[triangle] as usize]
 }
 
 /// Closed meshes turned, scaled by other factors along each axis, and mirrored.
@@ -382,6 +412,11 @@ fn instances() -> (Vec<ControlMesh>, Vec<ObjectDesc>) {
 #[test]
 fn closed_meshes_are_closed_to_the_bit() {
     check_all(Bench::new(Lab::new(), CreasePatches::default()));
+}
+
+#[test]
+fn closed_meshes_of_gregory_patches_are_closed_to_the_bit() {
+    check_all(Bench::new(Lab::gregory(), CreasePatches::default()));
 }
 
 #[test]
