@@ -273,6 +273,8 @@ void main()
         Object object = scene.v.objects.v[patch_places.y];
         st = tree_tex_coord(scene, object, info.ptex_face - object.first_face, ptex_uv(info, vec2(u.t, v.t)));
     }
+    // A triangle is a patch of the level that its face is of; its thirds have the factors of the next.
+    info.flags -= TRIANGLE ? 1u << 5 : 0u;
     put_surface_point(position, normal, normal, vec2(u.t, v.t), st, info, patch_words.w,
                       TRIANGLE ? KIND_GREGORY_TRIANGLE : KIND_GREGORY_QUAD, shown_factor());
 }

@@ -53,6 +53,13 @@ fn every_view_looks_as_it_did() {
 }
 
 #[test]
+fn gregory_patches_look_as_they_did() {
+    let folder = temporary();
+    let flags = format!("{SMALL_FLAGS} --fov 40 --method gregory --view patch");
+    check("gregory_patch", &image_of(&scene(SMALL_MESH), &flags, folder.path())).unwrap();
+}
+
+#[test]
 fn images_that_look_different_are_told_apart() {
     for (index, one) in VIEWS.iter().enumerate() {
         for other in &VIEWS[..index] {
@@ -70,7 +77,7 @@ fn golden_images_are_few_and_small() {
     /// Bytes of one.
     const MAX_BYTES: u64 = 100_000;
     let images: Vec<_> = fs::read_dir(path("hero").parent().unwrap()).unwrap().map(|entry| entry.unwrap()).collect();
-    assert_eq!(images.len(), VIEWS.len() + 1, "an image that no test compares");
+    assert_eq!(images.len(), VIEWS.len() + 2, "an image that no test compares");
     for image in images {
         assert!(image.metadata().unwrap().len() <= MAX_BYTES, "{}", image.path().display());
     }
