@@ -28,6 +28,7 @@ layout(location = 9) in vec3 curve_point[];
 layout(location = 10) in vec3 curve_across[];
 #include "shared/domain.glsl"
 #include "shared/border.glsl"
+#include "shared/gregory_displacement.glsl"
 
 struct Evaluated {
     vec3 position;
@@ -132,11 +133,6 @@ Evaluated evaluate_triangle(vec3 at)
     return result;
 }
 
-Parameter turned(Parameter along)
-{
-    return Parameter(along.s, along.t);
-}
-
 // The half of an edge at its first end, or at the other, as spacing.glsl has the points of an edge of two halves.
 Parameter in_half(Parameter along, bool is_second)
 {
@@ -145,29 +141,6 @@ Parameter in_half(Parameter along, bool is_second)
     precise float beyond = 0.5 + 0.5 * along.t;
     precise float rest = 0.5 * along.s;
     return is_second ? Parameter(beyond, rest) : Parameter(near, far);
-}
-
-// Which of the shared edges a point lies on, and where: the outer ones first, which the neighbours know. NONE: on none.
-uint shared_edge_at(GregoryFace face, bvec4 is_on, Parameter u, Parameter v, out Parameter at, out uint sharp_edge)
-{
-    uint kind = gregory_kind(face);
-    bool is_part = TRIANGLE || kind == GREGORY_NGON;
-    uint edge = is_on.x ? 0u : (is_on.w ? 3u : (is_on.y ? 1u : 2u));
-    at = edge == 0u ? u : (edge == 1u ? v : (edge == 2u ? turned(u) : turned(v)));
-    sharp_edge = edge;
-    if (is_part) {
-        bool is_outer = edge == 0u || edge == 3u;
-        at = is_outer ? in_half(at, edge == 3u) : at;
-        if (TRIANGLE) {
-            uint part = gregory_part(face);
-            edge = edge == 0u ? part : (part + 2u) % 3u;
-            sharp_edge = edge;
-            return is_outer ? edge : NONE;
-        }
-        // Edges of the face: from the corner before, to the corner after.
-        sharp_edge = edge == 0u ? 1u : (edge == 3u ? 0u : 2u);
-    }
-    return edge;
 }
 
 // The limit point that a corner of the patch is, or NONE.
@@ -197,30 +170,48 @@ EdgeFields edge_at(uint edge)
     return result;
 }
 
-// Makes a point on edges what both sides have there. The bicubic patch across an edge decides, else the two patches have the same curve
-// and the same field across it.
-void share_point(bvec4 is_on, Parameter u, Parameter v, inout vec3 position, inout vec3 normal)
+// The edge that a point on edges lies on: of two the outer one first, which the neighbours know.
+Seam seam_at(GregoryFace face, bvec4 is_on, Parameter u, Parameter v)
 {
-    SceneTables scene = push.frame.v.scene;
-    GregoryFace face = scene.v.gregory.v[patch_places.x];
-    Parameter at;
-    uint sharp_edge;
-    uint edge = shared_edge_at(face, is_on, u, v, at, sharp_edge);
-    uint limit = corner_limit(face, is_on);
-    bool is_sharp = edge != NONE && gregory_is_sharp(face, sharp_edge);
-    uint word = !TRIANGLE && gregory_kind(face) == GREGORY_QUAD && edge != NONE ? face.borders[edge] : NONE;
-    for (bool is_open = edge != NONE && limit == NONE; is_open; is_open = false) {
-        vec3 shared_normal;
-        evaluate_edge(edge_at(edge), at, position, shared_normal);
-        normal = is_sharp ? normal : shared_normal;
+    bool is_part = TRIANGLE || gregory_kind(face) == GREGORY_NGON;
+    uint edge = is_on.x ? 0u : (is_on.w ? 3u : (is_on.y ? 1u : 2u));
+    Seam result;
+    result.edge = edge;
+    result.at = edge == 0u ? u : (edge == 1u ? v : (edge == 2u ? turned(u) : turned(v)));
+    result.of_face = edge;
+    result.is_outer = !is_part || edge == 0u || edge == 3u;
+    if (is_part && result.is_outer) {
+        result.at = in_half(result.at, edge == 3u);
+        // Edges of the face: of a larger one from the corner before, to the corner after.
+        result.of_face = edge == 0u ? 1u : 0u;
+        if (TRIANGLE) {
+            uint part = gregory_part(face);
+            result.of_face = edge == 0u ? part : (part + 2u) % 3u;
+            result.edge = result.of_face;
+        }
+    } else if (TRIANGLE) {
+        // The triangle itself has a value there, whichever third asks.
+        result.edge = NONE;
     }
-    for (bool is_open = word != NONE && limit == NONE; is_open; is_open = false) {
-        BorderPoint border = border_point(word, (edge & 1u) == 0u ? u : v);
-        if (is_sharp) {
-            vec3 q[4];
-            border_curve(border, q);
-            position = curve_position(q, border_weights(border));
-        } else {
+    result.is_sharp = result.is_outer && gregory_is_sharp(face, result.of_face);
+    result.limit = corner_limit(face, is_on);
+    result.border = is_part ? NONE : face.borders[edge];
+    return result;
+}
+
+// Makes a point on edges what both sides have there. The bicubic patch across an edge decides, else the two patches have the same curve
+// and the same field across it. `border_normal` becomes that patch's.
+void share_point(Seam seam, Parameter u, Parameter v, inout vec3 position, inout vec3 normal, out vec3 border_normal)
+{
+    border_normal = normal;
+    for (bool is_open = seam.edge != NONE && seam.limit == NONE; is_open; is_open = false) {
+        vec3 shared_normal;
+        evaluate_edge(edge_at(seam.edge), seam.at, position, shared_normal);
+        normal = seam.is_sharp ? normal : shared_normal;
+    }
+    for (bool is_open = seam.border != NONE && seam.limit == NONE; is_open; is_open = false) {
+        BorderPoint border = border_point(seam.border, (seam.edge & 1u) == 0u ? u : v);
+        if (!seam.is_sharp || DISPLACED) {
             vec3 p[16];
             border_points(border, p);
             vec4 nu;
@@ -233,17 +224,39 @@ void share_point(bvec4 is_on, Parameter u, Parameter v, inout vec3 position, ino
             vec3 along_v;
             weigh_patch_and_tangents(p, nu, du, nv, dv, position, along_u, along_v);
             position = over_36(position);
-            normal = unit_normal(along_u, along_v);
+            border_normal = without_sign_of_zero(unit_normal(along_u, along_v));
+            normal = seam.is_sharp ? normal : border_normal;
+        }
+        if (seam.is_sharp) {
+            vec3 q[4];
+            border_curve(border, q);
+            position = curve_position(q, border_weights(border));
         }
     }
-    for (bool is_open = limit != NONE; is_open; is_open = false) {
+    for (bool is_open = seam.limit != NONE; is_open; is_open = false) {
+        SceneTables scene = push.frame.v.scene;
         Object object = scene.v.objects.v[patch_places.y];
-        LimitPoint point = scene.v.limits.v[limit];
+        LimitPoint point = scene.v.limits.v[seam.limit];
         position = to_world(object, point.position);
         normal = normal_to_world(object, point.normal);
     }
     position = without_sign_of_zero(position);
     normal = without_sign_of_zero(normal);
+}
+
+// The tangents of a triangle along u and v of one of its thirds.
+void tangents_of_part(uint part, Parameter u, Parameter v, inout vec3 along_u, inout vec3 along_v)
+{
+    // How the coordinates of the part's own corner and of the next one change; the three sum to 1.
+    vec2 own = vec2(-0.5 * v.s - v.t / 6.0, -0.5 * u.s - u.t / 6.0);
+    vec2 next = vec2(0.5 * v.s + v.t / 3.0, -u.t / 6.0);
+    vec2 previous = -own - next;
+    vec2 first = part == 0u ? own : (part == 1u ? previous : next);
+    vec2 second = part == 1u ? own : (part == 2u ? previous : next);
+    vec3 a = along_u;
+    vec3 b = along_v;
+    along_u = first.x * a + second.x * b;
+    along_v = first.y * a + second.y * b;
 }
 
 void main()
@@ -262,10 +275,26 @@ void main()
     }
     vec3 position = without_sign_of_zero(point.position);
     vec3 normal = without_sign_of_zero(unit_normal(point.along_u, point.along_v));
+    Seam seam = Seam(NONE, u, 0u, false, false, NONE, NONE);
+    vec3 border_normal = normal;
     if (WATERTIGHT) {
         for (bool is_open = any(is_on); is_open; is_open = false) {
-            share_point(is_on, u, v, position, normal);
+            seam = seam_at(push.frame.v.scene.v.gregory.v[patch_places.x], is_on, u, v);
+            share_point(seam, u, v, position, normal, border_normal);
         }
+    }
+    vec3 shading_normal = normal;
+    if (DISPLACED) {
+        vec3 along_u = 3.0 * point.along_u;
+        vec3 along_v = 3.0 * point.along_v;
+        if (TRIANGLE) {
+            along_u = point.along_u;
+            along_v = point.along_v;
+            tangents_of_part(gregory_part(push.frame.v.scene.v.gregory.v[patch_places.x]), u, v, along_u, along_v);
+        }
+        uint first_face = push.frame.v.scene.v.objects.v[patch_places.y].first_face;
+        is_on = bvec4(WATERTIGHT && is_on.x, WATERTIGHT && is_on.y, WATERTIGHT && is_on.z, WATERTIGHT && is_on.w);
+        shading_normal = displace(is_on, seam, u, v, info.ptex_face - first_face, along_u, along_v, border_normal, position, normal);
     }
     vec2 st = vec2(0.0);
     if (TEX_COORDS) {
@@ -275,6 +304,6 @@ void main()
     }
     // A triangle is a patch of the level that its face is of; its thirds have the factors of the next.
     info.flags -= TRIANGLE ? 1u << 5 : 0u;
-    put_surface_point(position, normal, normal, vec2(u.t, v.t), st, info, patch_words.w,
+    put_surface_point(position, normal, shading_normal, vec2(u.t, v.t), st, info, patch_words.w,
                       TRIANGLE ? KIND_GREGORY_TRIANGLE : KIND_GREGORY_QUAD, shown_factor());
 }

@@ -70,6 +70,13 @@ const uint GREGORY_QUAD = 1;
 const uint GREGORY_NGON = 2;     // the quad at a corner of a face of more than four sides
 const uint GREGORY_TRIANGLE = 3; // + part: the third of a triangle at that corner
 
+// The side that decides where points of an edge are displaced to. Flags: bits 0-1 its edge, 2 the edges run against each other, 3 it
+// is a face of other than four sides, whose parts at the edge's two ends are named, 4 nothing lies across.
+struct EdgeOwner {
+    uint faces[2]; // Ptex faces
+    uint flags;
+};
+
 // An irregular face as a Gregory patch. Seats are corners; of a part of a face of more than four sides the corner before, the
 // corner, the corner after and the centre. Edge i runs from seat i to the next; of such a part: from the corner before, to the corner
 // after, from the centre to the middle of the edge before, and to that of the edge after.
@@ -80,6 +87,8 @@ struct GregoryFace {
     float cosines[4]; // of the angle between neighbouring tangents at each seat
     uint borders[4];  // the bicubic patch across each edge, as PatchSeams has them
     uint flags;       // bits 0-2 the kind, bits 4-7 edges without a smooth surface across
+    EdgeOwner owners[4];
+    uint part_before; // Ptex face of the part before, of a face of other than four sides
 };
 
 // A limit point's weights for what it gives to the patches along an edge.

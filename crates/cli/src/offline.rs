@@ -142,9 +142,6 @@ impl Plan {
 
 /// Refuses what method gregory does not have.
 fn check_gregory(cage: &Cage, plan: &Plan) -> Result<()> {
-    if cage.is_displaced() {
-        bail!("method gregory draws surfaces without displacement so far: expected no displacement map");
-    }
     if cage.meshes().iter().any(|mesh| !mesh.edits.is_empty()) {
         bail!("method gregory has one patch a face of the cage: expected no hierarchical edits");
     }

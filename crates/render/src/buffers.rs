@@ -323,6 +323,8 @@ fn gregory(face: &GregoryFace) -> shaders::GregoryFace {
         cosines: face.cosines,
         borders: face.borders.map(|border| border.map_or(NONE, Border::pack)),
         flags: kind | u32::from(face.sharp) << 4,
+        owners: face.owners.map(|owner| shaders::EdgeOwner { faces: owner.faces, flags: owner.flags }),
+        part_before: face.part_before,
     }
 }
 

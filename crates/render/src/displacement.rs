@@ -163,6 +163,18 @@ pub(crate) struct TexCoordBuffers {
 }
 
 impl TexCoordBuffers {
+    /// Of displaced surfaces with Gregory patches: those of the bicubic patches, and a tree of all meshes for the others.
+    pub fn of_tables_and_tree(device: &Device, tables: &Tables, tree: &TexTree) -> Result<Self, Error> {
+        let channel = tables.face_varying.first();
+        let mut both = TexTree {
+            values: channel.map_or_else(Vec::new, |channel| channel.values.clone()),
+            patches: channel.map_or_else(|| vec![[NONE; 16]; tables.patches.len()], |channel| channel.patches.clone()),
+            ..TexTree::default()
+        };
+        both.append(tree);
+        Self::of_tree(device, &both)
+    }
+
     pub fn of_tables(device: &Device, tables: &Tables) -> Result<Self, Error> {
         let channel = tables.face_varying.first();
         let values = channel.map_or(&[][..], |channel| &channel.values);

@@ -157,7 +157,11 @@ impl Surface {
         let buffers = TableBuffers::new(device, &tables, &marks, &density_scales)?;
         let frame = FrameBuffers::new(device, &tables, &gpu_objects, &sizes, &marks)?;
         let lists = ListBuffers::new(device, &capacities, &phases, desc.method)?;
-        let tex_coords = TexCoordBuffers::of_tables(device, &tables)?;
+        let tex_coords = if desc.displaced && desc.method == SurfaceMethod::Gregory {
+            TexCoordBuffers::of_tables_and_tree(device, &tables, &tex_tree(meshes, &ranges)?)?
+        } else {
+            TexCoordBuffers::of_tables(device, &tables)?
+        };
         let colors = ColorBuffers::none(device)?;
         times.upload = milliseconds(start);
         let sub_pixel_bits = device.limits().sub_pixel_bits;
@@ -238,10 +242,7 @@ impl Surface {
             // They are part of the tables.
             return Ok(());
         }
-        let trees = meshes.iter().zip(&self.meshes);
-        let trees: Result<Vec<_>, Error> =
-            trees.map(|(mesh, ranges)| Ok((ranges.ptex_faces.len() as u32, TexTree::new(mesh)?))).collect();
-        self.tex_coords = TexCoordBuffers::of_tree(device, &TexTree::merged(&trees?))?;
+        self.tex_coords = TexCoordBuffers::of_tree(device, &tex_tree(meshes, &self.meshes)?)?;
         self.write_scene()
     }
 
@@ -447,6 +448,14 @@ impl Surface {
         let offset = u64::from(range.start) * size_of::<shaders::DrawEntry>() as u64;
         Ok(device.download(&self.lists.entries, offset, range.len())?)
     }
+}
+
+/// The trees of the meshes' first channels.
+fn tex_tree(meshes: &[&ControlMesh], ranges: &[MeshRanges]) -> Result<TexTree, Error> {
+    let trees = meshes.iter().zip(ranges);
+    let trees: Result<Vec<_>, Error> =
+        trees.map(|(mesh, ranges)| Ok((ranges.ptex_faces.len() as u32, TexTree::new(mesh)?))).collect();
+    Ok(TexTree::merged(&trees?))
 }
 
 /// Scales of the densities at all cage points.

@@ -41,6 +41,11 @@ impl Lab {
         Self::with_needs(|spacing| FrameNeeds { gregory: true, ..FrameNeeds::all(spacing) })
     }
 
+    /// For displaced Gregory patches.
+    pub fn displaced_gregory() -> Self {
+        Self::with_needs(|spacing| FrameNeeds { gregory: true, displaced: true, ..FrameNeeds::all(spacing) })
+    }
+
     pub fn with_needs(of: impl Fn(Spacing) -> FrameNeeds) -> Self {
         // A test that failed leaves nothing behind that the next one minds.
         let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);

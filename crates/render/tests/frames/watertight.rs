@@ -420,6 +420,11 @@ fn closed_meshes_of_gregory_patches_are_closed_to_the_bit() {
 }
 
 #[test]
+fn displaced_closed_meshes_of_gregory_patches_are_closed_to_the_bit() {
+    check_all(Bench::new(Lab::displaced_gregory(), CreasePatches::default()));
+}
+
+#[test]
 fn displaced_closed_meshes_are_closed_to_the_bit() {
     check_all(Bench::new(Lab::displaced(), CreasePatches::default()));
 }

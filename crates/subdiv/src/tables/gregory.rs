@@ -41,6 +41,45 @@ pub enum GregoryKind {
     PartOfNgon,
 }
 
+/// The side that decides where points of an edge are displaced to, for both: by its own parameters.
+///
+/// | flag bits | meaning |
+/// |---|---|
+/// | 0-1 | its edge; of a part of a face of other than four sides the first half is edge 0 of `faces[0]`, the other edge 3 of `faces[1]` |
+/// | 2 | the edges run against each other |
+/// | 3 | it is such a face |
+/// | 4 | nothing lies across |
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EdgeOwner {
+    /// Ptex faces.
+    pub faces: [u32; 2],
+    /// The table above.
+    pub flags: u32,
+}
+
+impl EdgeOwner {
+    const REVERSED: u32 = 4;
+    const PARTS: u32 = 8;
+    const ALONE: u32 = 16;
+
+    /// Of a half-edge: the first of those along its edge.
+    fn of(level: &Level, half_edge: u32) -> Self {
+        let twin = level.twin(half_edge);
+        let sharing = if twin == half_edge { level.sharing(&half_edge) } else { std::slice::from_ref(&twin) };
+        let first = sharing.iter().copied().filter(|&other| other != NONE).fold(half_edge, u32::min);
+        let face = level.face(first);
+        let (corner, sides) = (first - level.half_edges(face).start, level.sides(face));
+        let base = level.locations[face as usize].ptex_face;
+        let is_reversed = level.origin(first) != level.origin(half_edge);
+        let is_alone = sharing.iter().all(|&other| other == half_edge);
+        let flags = if is_reversed { Self::REVERSED } else { 0 } | if is_alone { Self::ALONE } else { 0 };
+        if sides == 4 {
+            return Self { faces: [base; 2], flags: flags | corner };
+        }
+        Self { faces: [base + corner, base + (corner + 1) % sides], flags: flags | Self::PARTS }
+    }
+}
+
 /// An irregular face as a Gregory patch; as many as [`super::IrregularFace`]s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GregoryFace {
@@ -58,6 +97,10 @@ pub struct GregoryFace {
     pub borders: [Option<Border>; 4],
     /// Edges without a smooth surface across: boundaries and infinitely sharp creases, one bit each.
     pub sharp: u8,
+    /// What decides along each edge where the surface is displaced.
+    pub owners: [EdgeOwner; 4],
+    /// The Ptex face of the part before, of a part of a face of other than four sides.
+    pub part_before: u32,
 }
 
 impl GregoryFace {
@@ -69,6 +112,8 @@ impl GregoryFace {
         cosines: [0.0; 4],
         borders: [None; 4],
         sharp: 0,
+        owners: [EdgeOwner { faces: [0; 2], flags: 0 }; 4],
+        part_before: NONE,
     };
 }
 
@@ -156,6 +201,7 @@ impl<'a> GregoryBuilder<'a> {
             quad.last[i as usize] = self.last_spoke(k, edge, limits);
             quad.borders[i as usize] = border_along(level, places, edge);
             quad.sharp |= u8::from(level.is_infinite(edge)) << i;
+            quad.owners[i as usize] = EdgeOwner::of(level, edge);
         }
         self.table.faces.push(quad);
     }
@@ -178,7 +224,9 @@ impl<'a> GregoryBuilder<'a> {
             part.first[i as usize] = self.first_spoke(0, edge, limits);
             part.last[i as usize] = self.last_spoke(0, edge, limits);
             part.sharp |= u8::from(level.is_infinite(edge)) << i;
+            part.owners[i as usize] = EdgeOwner::of(level, edge);
         }
+        part.part_before = part_before(level, corner);
         part
     }
 
@@ -193,12 +241,14 @@ impl<'a> GregoryBuilder<'a> {
             part.first[i] = self.first_spoke(k - 1, edge, limits);
             part.last[i] = self.last_spoke(k - 1, edge, limits);
             part.sharp |= u8::from(parent.is_infinite(edge)) << i;
+            part.owners[i] = EdgeOwner::of(parent, edge);
         }
         let centre = child_half_edge(face, parent, corner, 2);
         self.seat(&mut part, 3, k, centre, limits);
         let level = &self.refinement.levels[k as usize];
         part.first[2] = self.first_spoke(k, centre, limits);
         part.first[3] = self.last_spoke(k, level.previous(centre), limits);
+        part.part_before = part_before(parent, corner);
         part
     }
 
@@ -284,6 +334,12 @@ impl<'a> GregoryBuilder<'a> {
         });
         StencilRow { first_index, first_weight, count: weights.len() as u32 }
     }
+}
+
+/// The Ptex face at the corner before, of a face of other than four sides.
+fn part_before(level: &Level, corner: u32) -> u32 {
+    let face = level.face(corner);
+    level.locations[face as usize].ptex_face + level.previous(corner) - level.half_edges(face).start
 }
 
 /// The place of a corner's spoke in its sector.

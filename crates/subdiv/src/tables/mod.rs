@@ -24,7 +24,7 @@ use crate::stencil::{SharedWeights, StencilTable, has_large_faces};
 
 pub use crate::selection::PatchCounts;
 pub use face_varying::{FaceVaryingEvaluator, FaceVaryingPatch, FaceVaryingTable, TexTree};
-pub use gregory::{GregoryFace, GregoryKind, GregoryTable, Spoke};
+pub use gregory::{EdgeOwner, GregoryFace, GregoryKind, GregoryTable, Spoke};
 pub use irregular::IrregularFace;
 pub use lists::IndexLists;
 pub use merge::MeshRanges;

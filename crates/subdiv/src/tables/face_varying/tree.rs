@@ -117,19 +117,24 @@ impl TexTree {
                 merged.roots.extend((0..*ptex_face_count).map(|_| NONE));
                 continue;
             };
-            let firsts = [merged.nodes.len(), merged.patches.len(), merged.quads.len()].map(|count| count as u32);
-            let first_value = merged.values.len() as u32;
-            let moved = |branch: u32| match branch {
-                NONE => NONE,
-                _ => branch + firsts[(branch >> 30) as usize],
-            };
-            merged.roots.extend(tree.roots.iter().map(|&root| moved(root)));
-            merged.nodes.extend(tree.nodes.iter().map(|node| node.map(moved)));
-            merged.patches.extend(tree.patches.iter().map(|patch| patch.map(|value| value + first_value)));
-            merged.quads.extend(tree.quads.iter().map(|quad| quad.map(|value| value + first_value)));
-            merged.values.extend(&tree.values);
+            merged.append(tree);
         }
         merged
+    }
+
+    /// Appends another tree: its roots, and what they name, follow those here.
+    pub fn append(&mut self, tree: &Self) {
+        let firsts = [self.nodes.len(), self.patches.len(), self.quads.len()].map(|count| count as u32);
+        let first_value = self.values.len() as u32;
+        let moved = |branch: u32| match branch {
+            NONE => NONE,
+            _ => branch + firsts[(branch >> 30) as usize],
+        };
+        self.roots.extend(tree.roots.iter().map(|&root| moved(root)));
+        self.nodes.extend(tree.nodes.iter().map(|node| node.map(moved)));
+        self.patches.extend(tree.patches.iter().map(|patch| patch.map(|value| value + first_value)));
+        self.quads.extend(tree.quads.iter().map(|quad| quad.map(|value| value + first_value)));
+        self.values.extend(&tree.values);
     }
 }
 
