@@ -187,11 +187,18 @@ uint corner_limit(GregoryFace face, bvec4 is_on)
     return face.limits[corner];
 }
 
-EdgeFields edge_at(uint edge)
+// Whole patches have the curves' points among their own.
+EdgeFields edge_at(uint edge, bool is_whole)
 {
+    uint next = edge + 1u == (TRIANGLE ? 3u : 4u) ? 0u : edge + 1u;
+    uint of_patch[4] = uint[4](5u * edge, 5u * edge + 1u, 5u * next + 2u, 5u * next);
     EdgeFields result;
     [[unroll]] for (uint i = 0u; i < 4u; ++i) {
-        result.curve[i] = curve_point[4u * edge + i];
+        if (is_whole) {
+            result.curve[i] = control_point[of_patch[i]];
+        } else {
+            result.curve[i] = curve_point[4u * edge + i];
+        }
         result.across[i] = curve_across[4u * edge + i];
     }
     return result;
@@ -211,7 +218,7 @@ void share_point(bvec4 is_on, Parameter u, Parameter v, inout vec3 position, ino
     uint word = !TRIANGLE && gregory_kind(face) == GREGORY_QUAD && edge != NONE ? face.borders[edge] : NONE;
     for (bool is_open = edge != NONE && limit == NONE; is_open; is_open = false) {
         vec3 shared_normal;
-        evaluate_edge(edge_at(edge), at, position, shared_normal);
+        evaluate_edge(edge_at(edge, TRIANGLE || gregory_kind(face) != GREGORY_NGON), at, position, shared_normal);
         normal = is_sharp ? normal : shared_normal;
     }
     for (bool is_open = word != NONE && limit == NONE; is_open; is_open = false) {
