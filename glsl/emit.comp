@@ -24,6 +24,7 @@ layout(push_constant, scalar) uniform EmitPush {
 
 #if defined(GREGORY_PATCHES) || defined(GREGORY_CUT)
 #include "shared/gregory.glsl"
+#include "shared/stencil.glsl"
 #endif
 
 #if defined(LEAVES) || defined(GREGORY_PATCHES) || defined(GREGORY_CUT)
@@ -292,8 +293,32 @@ void main()
 #endif
 
 #if defined(GREGORY_PATCHES) || defined(GREGORY_CUT)
+// The control points of a patch by its stencil: the ring is gone over once.
+void stencil_points(GregoryFace face, uint place, uint corners, out vec3 p[20])
+{
+    GregoryStencil stencil = push.scene.v.stencils.v[place];
+    vec3 origins[4];
+    [[unroll]] for (uint i = 0u; i < 4u; ++i) {
+        uint corner = i < corners ? i : 0u;
+        origins[i] = push.scene.v.points.v[stencil.corners[corner]];
+        p[5u * i] = push.scene.v.limits.v[face.limits[corner]].position;
+        [[unroll]] for (uint which = 1u; which < 5u; ++which) {
+            p[5u * i + which] = i < corners ? origins[i] : p[0];
+        }
+    }
+    for (uint k = 0u; k < stencil.point_count; ++k) {
+        uvec2 entry = push.scene.v.stencil_points.v[stencil.first_point + k];
+        uint column = stencil.first_weight + entry.y * 8u * corners;
+        vec3 point = push.scene.v.points.v[entry.x];
+        [[unroll]] for (uint row = 0u; row < 16u; ++row) {
+            float weight = row < 4u * corners ? push.scene.v.stencil_weights.v[column + min(row, 4u * corners - 1u)] : 0.0;
+            p[5u * (row / 4u) + row % 4u + 1u] += weight * (point - origins[row / 4u]);
+        }
+    }
+}
+
 // Whether a Gregory patch lies outside of the view: it lies in the convex hull of its control points.
-bool is_outside(Object object, GregoryFace face, FrameInput frame)
+bool is_outside(Object object, GregoryFace face, uint face_place, FrameInput frame)
 {
     EmitView view = frame.view;
     uint kind = gregory_kind(face);
@@ -301,14 +326,20 @@ bool is_outside(Object object, GregoryFace face, FrameInput frame)
     vec3 p[20];
     float largest_offset = 0.0;
     float largest = 0.0;
+    bool is_stencil = has_stencil(push.scene, face_place);
+    if (STENCIL) {
+        for (bool is_open = is_stencil; is_open; is_open = false) {
+            stencil_points(face, face_place, kind == GREGORY_TRIANGLE ? 3u : 4u, p);
+        }
+    }
     [[dont_unroll]] for (uint i = 0u; i < 20u; ++i) {
         // A triangle has its first point again.
         uint place = i < count ? i : 0u;
-        vec3 point = vec3(0.0);
+        vec3 point = p[i];
         for (bool is_open = kind == GREGORY_NGON; is_open; is_open = false) {
             point = ngon_point(push.scene, face, place);
         }
-        for (bool is_open = kind != GREGORY_NGON; is_open; is_open = false) {
+        for (bool is_open = !is_stencil && kind != GREGORY_NGON; is_open; is_open = false) {
             point = corner_point(push.scene, face, place, kind == GREGORY_TRIANGLE ? 3u : 4u);
         }
         p[i] = to_world(object, point);
@@ -356,7 +387,7 @@ void main()
         uint split_edges = split_edges_of(object, item.place);
         PatchFactors factors = patch_factors(face_density(push.scene, object, info.ptex_face), info, split_edges);
         pieces = cut_count(factors);
-        is_seen = !is_culled(frame) || !is_outside(object, face, frame);
+        is_seen = !is_culled(frame) || !is_outside(object, face, item.place, frame);
         uvec2 inner = uvec2(factors.inner_counts);
         vertices = (inner.x + 1u) * (inner.y + 1u);
         entry = DrawEntry(item.place, item.object, entry_flags(split_edges, 0u, uvec2(0u)),

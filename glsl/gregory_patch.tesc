@@ -1,9 +1,10 @@
 #version 460
-// Gregory patches: makes their control points of the spokes around their corners, and what they share with their neighbours along
-// each edge (Loop et al. 2009, section 4.2).
+// Gregory patches: makes their control points of the spokes around their corners (Loop et al. 2009, section 4.2) or of the cage's points
+// (section 4.3), and what they share with their neighbours along each edge.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/frame.glsl"
 #include "shared/gregory.glsl"
+#include "shared/stencil.glsl"
 #include "shared/entry.glsl"
 #include "shared/factors.glsl"
 
@@ -20,8 +21,8 @@ layout(location = 5) patch out uvec3 piece_place;
 layout(location = 6) patch out uvec4 piece_first;
 layout(location = 7) patch out uvec4 piece_last;
 layout(location = 8) patch out uvec2 patch_places; // of the face, and of its object
-layout(location = 9) out vec3 curve_point[];  // four of each edge: its curve's control points,
-layout(location = 10) out vec3 curve_across[]; // and those of the field across
+layout(location = 9) out vec3 curve_point[];  // of parts of faces of more than four sides: four of each edge's curve; others have them
+layout(location = 10) out vec3 curve_across[]; // four of the field across each edge
 
 #include "shared/levels.glsl"
 
@@ -49,24 +50,30 @@ void main()
     GregoryFace face = scene.v.gregory.v[entry.place];
     uint i = gl_InvocationID;
     vec3 point = vec3(0.0);
+    vec3 on_curve = vec3(0.0);
+    vec3 across = vec3(0.0);
+    bool is_stencil = has_stencil(scene, entry.place);
+    if (STENCIL) {
+        for (bool is_open = is_stencil; is_open; is_open = false) {
+            stencil_point(scene, face, entry.place, i, TRIANGLE ? 3u : 4u, point, across);
+        }
+    }
     if (!TRIANGLE) {
         for (bool is_open = gregory_kind(face) == GREGORY_NGON; is_open; is_open = false) {
             point = ngon_point(scene, face, i);
         }
     }
-    for (bool is_open = TRIANGLE ? i < 15u : gregory_kind(face) == GREGORY_QUAD; is_open; is_open = false) {
+    for (bool is_open = !is_stencil && (TRIANGLE ? i < 15u : gregory_kind(face) == GREGORY_QUAD); is_open; is_open = false) {
         point = corner_point(scene, face, i, TRIANGLE ? 3u : 4u);
     }
-    control_point[gl_InvocationID] = to_world(object, point);
-    vec3 on_curve = vec3(0.0);
-    vec3 across = vec3(0.0);
-    for (bool is_open = i < (TRIANGLE ? 12u : 16u); is_open; is_open = false) {
+    for (bool is_open = !is_stencil && i < (TRIANGLE ? 12u : 16u); is_open; is_open = false) {
         EdgeFields edge = shared_edge(scene, face, i / 4u);
         on_curve = to_world(object, edge.curve[i & 3u]);
-        across = to_world_vector(object, edge.across[i & 3u]);
+        across = edge.across[i & 3u];
     }
+    control_point[gl_InvocationID] = to_world(object, point);
     curve_point[gl_InvocationID] = on_curve;
-    curve_across[gl_InvocationID] = across;
+    curve_across[gl_InvocationID] = to_world_vector(object, across);
     if (i != 0u) {
         return;
     }

@@ -160,11 +160,18 @@ uint corner_limit(GregoryFace face, bvec4 is_on)
     return face.limits[corner];
 }
 
-EdgeFields edge_at(uint edge)
+// Whole patches have the curves' points among their own.
+EdgeFields edge_at(uint edge, bool is_whole)
 {
+    uint next = edge + 1u == (TRIANGLE ? 3u : 4u) ? 0u : edge + 1u;
+    uint of_patch[4] = uint[4](5u * edge, 5u * edge + 1u, 5u * next + 2u, 5u * next);
     EdgeFields result;
     [[unroll]] for (uint i = 0u; i < 4u; ++i) {
-        result.curve[i] = curve_point[4u * edge + i];
+        if (is_whole) {
+            result.curve[i] = control_point[of_patch[i]];
+        } else {
+            result.curve[i] = curve_point[4u * edge + i];
+        }
         result.across[i] = curve_across[4u * edge + i];
     }
     return result;
@@ -206,7 +213,8 @@ void share_point(Seam seam, Parameter u, Parameter v, inout vec3 position, inout
     border_normal = normal;
     for (bool is_open = seam.edge != NONE && seam.limit == NONE; is_open; is_open = false) {
         vec3 shared_normal;
-        evaluate_edge(edge_at(seam.edge), seam.at, position, shared_normal);
+        bool is_whole = TRIANGLE || gregory_kind(push.frame.v.scene.v.gregory.v[patch_places.x]) != GREGORY_NGON;
+        evaluate_edge(edge_at(seam.edge, is_whole), seam.at, position, shared_normal);
         normal = seam.is_sharp ? normal : shared_normal;
     }
     for (bool is_open = seam.border != NONE && seam.limit == NONE; is_open; is_open = false) {

@@ -179,6 +179,9 @@ struct SceneData {
     IrregularFaces irregular;
     GregoryFaces gregory;
     SpokePoints spokes;
+    GregoryStencils stencils;   // of Gregory patches
+    RingPoints stencil_points;
+    Weights stencil_weights;
     PtexFaces ptex_faces;
     Indices neighbour_first; // slot to its first in `neighbours`
     Indices neighbours;

@@ -91,6 +91,17 @@ struct GregoryFace {
     uint part_before; // Ptex face of the part before, of a face of other than four sides
 };
 
+// How the control points of a Gregory patch are made of the cage's points: of a matrix that has a row for each of e+, e-, f+, f- of
+// each corner, then one for each of the four vectors across each edge, and lies column by column; and of a ring that names points
+// in ascending order, and their columns.
+struct GregoryStencil {
+    uint corners[4];   // points that the sums of rows are relative to
+    uint first_point;  // of the ring
+    uint point_count;  // 0: the patch's points are made of spokes
+    uint first_weight;
+    uint spoke_edges;  // edges whose points are those of the spokes, one bit each
+};
+
 // A limit point's weights for what it gives to the patches along an edge.
 struct Spoke {
     vec2 along;      // of its tangents in the edge point
@@ -164,6 +175,8 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Reg
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SeamTable { PatchSeams v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer IrregularFaces { IrregularFace v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer GregoryFaces { GregoryFace v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer GregoryStencils { GregoryStencil v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RingPoints { uvec2 v[]; }; // point and column
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Spokes { Spoke v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SpokeRanges { uvec2 v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SpokePoints { SpokePoint v[]; };

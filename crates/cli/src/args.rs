@@ -13,8 +13,8 @@ use planish_render::{Density, SurfaceMethod};
 use crate::aov::AovList;
 use crate::frames::FrameRange;
 use crate::names::{
-    CreasePatchesName, DisplacementKindName, DisplacementLayoutName, GregoryNormalsName, LodName, MethodName,
-    SchemeName, SpacingName, ViewName, name_of,
+    CreasePatchesName, DisplacementKindName, DisplacementLayoutName, GregoryNormalsName, GregoryPointsName, LodName,
+    MethodName, SchemeName, SpacingName, ViewName, name_of,
 };
 use crate::values::{self, FrameRate, MAX_LEVEL};
 
@@ -168,6 +168,9 @@ pub struct BenchArguments {
     /// Time fas and dfas at these tess factors with and without watertight seams
     #[arg(long, requires = "tess", conflicts_with = "creases")]
     pub seams: bool,
+    /// Time fas, dfas and both implementations of gregory side by side instead, at tess factors 6, 10, 17 and 25 or those given
+    #[arg(long, conflicts_with_all = ["levels", "cpu", "path", "cameras", "creases", "seams"])]
+    pub gregory: bool,
     /// Time the building of tables for these levels instead, on one thread of the CPU; needs no device
     #[arg(long)]
     pub cpu: bool,
@@ -239,6 +242,9 @@ pub struct SurfaceArguments {
     /// Creases that are patches of their own, instead of being refined to the last level
     #[arg(long, value_enum, default_value_t = CreasePatchesName::Infinite)]
     pub crease_patches: CreasePatchesName,
+    /// How control points of Gregory patches are made
+    #[arg(long, value_enum, default_value_t = GregoryPointsName::TwoStage)]
+    pub gregory: GregoryPointsName,
     /// Normals of Gregory patches: of their Bezier form, exact along edges, or of the rational patch
     #[arg(long, value_enum, default_value_t = GregoryNormalsName::Approximate)]
     pub gregory_normals: GregoryNormalsName,

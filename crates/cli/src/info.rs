@@ -9,7 +9,7 @@ use planish_subdiv::mesh::{
     BoundaryInterpolation, Creasing, FaceVaryingInterpolation, TriangleSubdivision, VertexInterpolation,
 };
 use planish_subdiv::selection::{PatchCounts, deepest_cut};
-use planish_subdiv::tables::{GregoryKind, IndexLists, Tables};
+use planish_subdiv::tables::{GregoryKind, GregoryTable, IndexLists, Tables};
 use planish_subdiv::{ControlMesh, patch::PatchInfo};
 use serde::Serialize;
 
@@ -45,7 +45,8 @@ fn surface_desc(arguments: &InfoArguments, cage: &Cage) -> Result<SurfaceDesc> {
         Some(level) if surface.tess.is_none() && surface.edge_pixels.is_none() => {
             surface.check_available()?;
             let crease_patches = surface.crease_patches.into();
-            Ok(SurfaceDesc { method: surface.method()?, level, crease_patches, displaced: false })
+            let gregory_points = surface.gregory.into();
+            Ok(SurfaceDesc { method: surface.method()?, level, crease_patches, displaced: false, gregory_points })
         }
         _ => Ok(Plan::unseen(cage, surface, &arguments.view, FrameRange::single(0))?.desc),
     }
@@ -89,7 +90,20 @@ struct RefinementInfo {
     level: u32,
     preprocess_ms: BTreeMap<&'static str, f64>,
     memory_bytes: BTreeMap<&'static str, u64>,
+    /// Tables of Gregory stencils, and patches that have one; if they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gregory_stencils: Option<StencilInfo>,
     levels: Vec<LevelInfo>,
+}
+
+/// What stencils of Gregory patches there are.
+#[derive(Debug, Serialize)]
+struct StencilInfo {
+    connectivities: usize,
+    faces: usize,
+    /// Faces whose points are made in two stages all the same.
+    faces_of_spokes: usize,
+    bytes: u64,
 }
 
 /// What one level holds.
@@ -244,6 +258,7 @@ impl RefinementInfo {
                 ("tables", table_bytes(tables)),
                 ("points", point_bytes * u64::from(tables.point_count())),
             ]),
+            gregory_stencils: StencilInfo::new(&tables.gregory),
             levels: levels.collect(),
         }
     }
@@ -254,6 +269,10 @@ impl RefinementInfo {
         line("  time", format!("{} ms topology, {} ms tables", time("topology"), time("tables")));
         let bytes = |name| bytes_text(self.memory_bytes[name]);
         line("  memory", format!("{} tables, {} points", bytes("tables"), bytes("points")));
+        if let Some(StencilInfo { connectivities, faces, faces_of_spokes, bytes }) = &self.gregory_stencils {
+            let stencils = format!("{connectivities} connectivities of {faces} faces, {}", bytes_text(*bytes));
+            line("  stencils", format!("{stencils}; {faces_of_spokes} faces in two stages"));
+        }
     }
 
     fn levels_table(&self) -> TextTable {
@@ -278,6 +297,20 @@ impl RefinementInfo {
         }
         table.push(row("all".to_owned(), &sum));
         table
+    }
+}
+
+impl StencilInfo {
+    fn new(table: &GregoryTable) -> Option<Self> {
+        let stencils = &table.stencils;
+        let drawn = table.faces.iter().zip(&stencils.faces).filter(|(face, _)| face.kind != GregoryKind::None);
+        let (of_spokes, of_stencils): (Vec<_>, Vec<_>) = drawn.partition(|(_, stencil)| stencil.is_of_spokes());
+        (!stencils.faces.is_empty()).then(|| Self {
+            connectivities: stencils.connectivities.len(),
+            faces: of_stencils.len(),
+            faces_of_spokes: of_spokes.len(),
+            bytes: stencil_bytes(table),
+        })
     }
 }
 
@@ -309,6 +342,23 @@ fn patch_counts(desc: &SurfaceDesc, made: &Preprocessed) -> Vec<PatchCounts> {
     counts
 }
 
+/// Bytes of stencils of Gregory patches on a device.
+fn stencil_bytes(table: &GregoryTable) -> u64 {
+    let stencils = &table.stencils;
+    let faces = stencils.faces.len() * size_of::<[u32; 4 + 4]>();
+    (faces + size_of_val(stencils.rings.as_slice()) + size_of_val(stencils.weights.as_slice())) as u64
+}
+
+/// Bytes of Gregory patches on a device: faces and stencils, and spokes if any are used.
+fn gregory_bytes(table: &GregoryTable) -> u64 {
+    let spokes = table.of_limit.len() * size_of::<[u32; 2]>()
+        + table.spokes.len() * size_of::<[u32; 7 + 3]>()
+        + size_of_val(table.indices.as_slice())
+        + size_of_val(table.weights.as_slice());
+    let spokes = if table.needs_spokes() { spokes } else { 0 };
+    (table.faces.len() * size_of::<[u32; 4 * 5 + 1]>() + spokes) as u64 + stencil_bytes(table)
+}
+
 /// Bytes that the tables take on a device.
 pub fn table_bytes(tables: &Tables) -> u64 {
     /// First index, first weight and count.
@@ -328,7 +378,7 @@ pub fn table_bytes(tables: &Tables) -> u64 {
         size_of_val(tables.ptex_faces.as_slice()),
         lists(&tables.stars) + lists(&tables.slots.neighbours) + lists(&tables.slots.rings),
     ];
-    bytes.iter().sum::<usize>() as u64
+    bytes.iter().sum::<usize>() as u64 + gregory_bytes(&tables.gregory)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Names on the command line for what the renderer offers.
 
 use clap::ValueEnum;
-use planish_render::{Spacing, View};
+use planish_render::{GregoryPoints, Spacing, View};
 use planish_scene::displacement::{DisplacementKind, DisplacementLayout};
 use planish_subdiv::refine::CreasePatches;
 
@@ -31,6 +31,24 @@ pub enum GregoryNormalsName {
     Approximate,
     /// Of the rational patch
     Exact,
+}
+
+/// How control points of Gregory patches are made, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum GregoryPointsName {
+    /// Of what limit points hand on to the patches around them (Loop et al. 2009, sections 4.1 and 4.2)
+    TwoStage,
+    /// Of the cage's points, by a table of weights for each connectivity (section 4.3)
+    Stencil,
+}
+
+impl From<GregoryPointsName> for GregoryPoints {
+    fn from(name: GregoryPointsName) -> Self {
+        match name {
+            GregoryPointsName::TwoStage => Self::TwoStage,
+            GregoryPointsName::Stencil => Self::Stencil,
+        }
+    }
 }
 
 /// Subdivision schemes by name.

@@ -7,8 +7,8 @@ use glam::{Affine3A, Mat4, Vec3};
 use planish_gpu::{Calls, Device, Encoder, Recorded, SubmitReport};
 use planish_render::density::{MAX_UNCUT_DENSITY, isolation_level, largest_density};
 use planish_render::{
-    Culling, Density, DrawOptions, DrawPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, Layers, ObjectDesc,
-    Selection, Spacing, Status, Surface, SurfaceDesc, SurfaceMethod, Targets, View, preprocess,
+    Culling, Density, DrawOptions, DrawPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, GregoryPoints,
+    Layers, ObjectDesc, Selection, Spacing, Status, Surface, SurfaceDesc, SurfaceMethod, Targets, View, preprocess,
 };
 use planish_scene::Camera;
 use planish_subdiv::refine::CreasePatches;
@@ -30,6 +30,8 @@ pub struct PlanSetting {
     pub size: [u32; 2],
     /// Seams have the same bits on both sides.
     pub watertight: bool,
+    /// How control points of Gregory patches are made.
+    pub gregory_points: GregoryPoints,
     /// Gregory patches have the normals of the rational patch.
     pub exact_normals: bool,
     pub options: FrameOptions,
@@ -84,6 +86,7 @@ impl Plan {
             spacing: surface.spacing.into(),
             size: view.size,
             watertight: !surface.no_watertight,
+            gregory_points: surface.gregory.into(),
             exact_normals: surface.gregory_normals == GregoryNormalsName::Exact,
             options,
         };
@@ -108,6 +111,7 @@ impl Plan {
             displaced: cage.is_displaced(),
             tex_coords: cage.has_uv(),
             gregory: is_gregory,
+            gregory_points: setting.gregory_points,
             exact_normals: setting.exact_normals,
             colors: cage.has_colors(),
             ..frame_needs(setting.spacing, density, &objects)
@@ -121,6 +125,7 @@ impl Plan {
                 level,
                 crease_patches: setting.crease_patches,
                 displaced: cage.is_displaced(),
+                gregory_points: setting.gregory_points,
             },
             needs,
             options: setting.options,
@@ -163,6 +168,7 @@ pub fn frame_needs(spacing: Spacing, density: f32, objects: &[ObjectDesc]) -> Fr
         displaced: false,
         tex_coords: false,
         gregory: false,
+        gregory_points: GregoryPoints::TwoStage,
         exact_normals: false,
         colors: false,
     }

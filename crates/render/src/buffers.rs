@@ -4,7 +4,10 @@ use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, DrawArguments, Encoder
 use planish_shaders as shaders;
 use planish_shaders::{DrawEntry, DrawHead, FrameCounts, FrameData, FrameInput, ListHead, ListItem, Object, SceneData};
 use planish_subdiv::patch::{FillingQuad, PatchInfo, RegularPatch};
-use planish_subdiv::tables::{Border, GregoryFace, GregoryKind, IndexLists, IrregularFace, PatchSeams, Spoke, Tables};
+use planish_subdiv::tables::{
+    Border, GregoryFace, GregoryKind, GregoryStencils, IndexLists, IrregularFace, PatchSeams, Spoke, StencilFace,
+    Tables,
+};
 use planish_subdiv::topology::NONE;
 
 use crate::displacement::limit_seats;
@@ -34,6 +37,9 @@ pub(crate) struct TableBuffers {
     pub spokes: Buffer,
     pub spoke_indices: Buffer,
     pub spoke_weights: Buffer,
+    pub stencil_faces: Buffer,
+    pub stencil_rings: Buffer,
+    pub stencil_weights: Buffer,
     pub quads: Buffer,
     pub ptex_faces: Buffer,
     pub neighbours: [Buffer; 2],
@@ -46,6 +52,8 @@ pub(crate) struct TableBuffers {
 impl TableBuffers {
     pub fn new(device: &Device, tables: &Tables, marks: &Marks, density_scales: &[f32]) -> Result<Self, Error> {
         let (stencils, limits) = (&tables.stencils, &tables.limits);
+        let gregory_stencils = &tables.gregory.stencils;
+        let needs_spokes = tables.gregory.needs_spokes();
         let star_marks = IndexLists { first: tables.stars.first.clone(), indices: marks.of_stars(tables) };
         Ok(Self {
             rows: table(device, "stencil rows", &rows(&stencils.rows))?,
@@ -60,10 +68,17 @@ impl TableBuffers {
             seams: table(device, "seams", &tables.seams.iter().map(seams).collect::<Vec<_>>())?,
             irregular: table(device, "irregular faces", &tables.irregular.iter().map(irregular).collect::<Vec<_>>())?,
             gregory: table(device, "Gregory faces", &tables.gregory.faces.iter().map(gregory).collect::<Vec<_>>())?,
-            spoke_ranges: table(device, "spoke ranges", &tables.gregory.of_limit)?,
-            spokes: table(device, "spokes", &tables.gregory.spokes.iter().map(spoke).collect::<Vec<_>>())?,
-            spoke_indices: table(device, "spoke indices", &tables.gregory.indices)?,
-            spoke_weights: table(device, "spoke weights", &tables.gregory.weights)?,
+            spoke_ranges: table(device, "spoke ranges", only_if(needs_spokes, &tables.gregory.of_limit))?,
+            spokes: table(
+                device,
+                "spokes",
+                &only_if(needs_spokes, &tables.gregory.spokes).iter().map(spoke).collect::<Vec<_>>(),
+            )?,
+            spoke_indices: table(device, "spoke indices", only_if(needs_spokes, &tables.gregory.indices))?,
+            spoke_weights: table(device, "spoke weights", only_if(needs_spokes, &tables.gregory.weights))?,
+            stencil_faces: table(device, "stencil faces", &stencil_faces(gregory_stencils))?,
+            stencil_rings: table(device, "stencil rings", &gregory_stencils.rings)?,
+            stencil_weights: table(device, "Gregory stencil weights", &gregory_stencils.weights)?,
             quads: table(device, "filling quads", &tables.filling.iter().map(quad).collect::<Vec<_>>())?,
             ptex_faces: table(device, "Ptex faces", &tables.ptex_faces)?,
             neighbours: lists(device, "neighbours", &tables.slots.neighbours)?,
@@ -92,6 +107,9 @@ impl TableBuffers {
             &self.spokes,
             &self.spoke_indices,
             &self.spoke_weights,
+            &self.stencil_faces,
+            &self.stencil_rings,
+            &self.stencil_weights,
             &self.quads,
             &self.ptex_faces,
             &self.density_scales,
@@ -133,6 +151,7 @@ impl FrameBuffers {
     ) -> Result<Self, Error> {
         let object_buffer = mapped::<Object>(device, "objects", objects.len() as u32)?;
         object_buffer.write(0, objects)?;
+        let spoke_count = if tables.gregory.needs_spokes() { tables.gregory.spokes.len() } else { 0 };
         let tangent_count = tables.limit_seats.len().max(tables.gregory.of_limit.len());
         let all_rows: Vec<u32> = Phases::new(tables).rows.iter().flat_map(|&[first, n]| first..first + n).collect();
         Ok(Self {
@@ -145,7 +164,7 @@ impl FrameBuffers {
             points: array::<shaders::Points>(device, "points", tables.point_count())?,
             limits: array::<shaders::LimitPoint>(device, "limit points", tables.limit_point_count())?,
             limit_tangents: array::<shaders::LimitTangents>(device, "limit tangents", tangent_count as u32)?,
-            spoke_points: array::<shaders::SpokePoint>(device, "spoke points", tables.gregory.spokes.len() as u32)?,
+            spoke_points: array::<shaders::SpokePoint>(device, "spoke points", spoke_count as u32)?,
             densities: array::<shaders::SlotDensity>(device, "densities", sizes.slots)?,
             split_edges: array::<u32>(device, "split edges", sizes.edges.div_ceil(32))?,
             star_marks: array::<u32>(device, "star marks", tables.stars.count().div_ceil(32))?,
@@ -259,6 +278,11 @@ pub(crate) fn keep(encoder: &mut Encoder, surface: &crate::surface::Surface) {
     all.for_each(|buffer| encoder.keep(buffer));
 }
 
+/// A table, or nothing where it is not needed.
+fn only_if<T>(is_needed: bool, table: &[T]) -> &[T] {
+    if is_needed { table } else { &[] }
+}
+
 fn read_back<T>(device: &Device, name: &str, count: usize) -> Result<Buffer, Error> {
     let size = (count * size_of::<T>()) as u64;
     Ok(Buffer::new(device, &BufferDesc { name, kind: BufferKind::Readback, size })?)
@@ -326,6 +350,22 @@ fn gregory(face: &GregoryFace) -> shaders::GregoryFace {
         owners: face.owners.map(|owner| shaders::EdgeOwner { faces: owner.faces, flags: owner.flags }),
         part_before: face.part_before,
     }
+}
+
+fn stencil_faces(stencils: &GregoryStencils) -> Vec<shaders::GregoryStencil> {
+    let face = |face: &StencilFace| {
+        let Some(table) = stencils.connectivities.get(face.connectivity as usize) else {
+            return shaders::GregoryStencil::default();
+        };
+        shaders::GregoryStencil {
+            corners: face.corners.map(|corner| if corner == NONE { face.corners[0] } else { corner }),
+            first_point: face.first_point,
+            point_count: table.point_count,
+            first_weight: table.first_weight,
+            spoke_edges: face.spoke_edges.into(),
+        }
+    };
+    stencils.faces.iter().map(face).collect()
 }
 
 fn spoke(spoke: &Spoke) -> shaders::Spoke {

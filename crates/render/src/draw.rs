@@ -7,7 +7,7 @@ use crate::camera::FrameCamera;
 use crate::error::Error;
 use crate::frame::draw_push;
 use crate::lists::{PatchKind, draw_arguments};
-use crate::options::{FrameNeeds, SurfaceMethod, View};
+use crate::options::{FrameNeeds, GregoryPoints, SurfaceMethod, View};
 use crate::pipelines::{Output, PipelineOptions, pipelines};
 use crate::surface::{Surface, SurfaceDesc};
 use crate::targets::{Layers, Targets};
@@ -73,6 +73,7 @@ impl DrawPasses {
             watertight: needs.watertight,
             displaced: needs.displaced,
             tex_coords: false,
+            stencils: needs.gregory_points == GregoryPoints::Stencil,
             exact_normals: needs.exact_normals,
             colors: layers == Layers::GeometryAndColors,
         };

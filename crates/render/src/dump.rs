@@ -13,7 +13,7 @@ use crate::camera::FrameCamera;
 use crate::error::Error;
 use crate::frame::draw_push;
 use crate::lists::{PatchKind, draw_arguments};
-use crate::options::{FrameNeeds, SurfaceMethod, View};
+use crate::options::{FrameNeeds, GregoryPoints, SurfaceMethod, View};
 use crate::pipelines::{Output, PipelineOptions, pipelines};
 use crate::surface::{Surface, SurfaceDesc};
 
@@ -76,6 +76,7 @@ impl DumpPasses {
             watertight: needs.watertight,
             displaced: needs.displaced,
             tex_coords: needs.tex_coords,
+            stencils: needs.gregory_points == GregoryPoints::Stencil,
             exact_normals: needs.exact_normals,
             colors: needs.colors,
         };

@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::factors::{Grain, PatchFactors, triangle_count};
 use crate::lists::{CHUNK, KIND_COUNT, LIST_BASE, LIST_CUT, LIST_CUT_GREGORY, LIST_LEAVES, LIST_PATCHES, PatchKind};
 use crate::objects::to_world;
-use crate::options::{Culling, FrameNeeds, Spacing};
+use crate::options::{Culling, FrameNeeds, GregoryPoints, Spacing};
 use crate::program::{compute_pipeline, specialized_compute_pipeline};
 use crate::select::head_offset;
 use crate::surface::Surface;
@@ -45,13 +45,14 @@ impl Emit {
             SpecConstant { id: shaders::emit_patches_comp::SPEC_CULL, bits: u32::from(needs.culls) },
         ];
         let pipeline = |module| specialized_compute_pipeline(device, module, CHUNK, &spec);
+        let stencils = u32::from(needs.gregory_points == GregoryPoints::Stencil);
+        let stencils = SpecConstant { id: shaders::emit_gregory_comp::SPEC_STENCIL, bits: stencils };
+        let gregory_spec: Vec<SpecConstant> = spec.into_iter().chain([stencils]).collect();
+        let gregory =
+            || specialized_compute_pipeline(device, &shaders::emit_gregory_comp::PROGRAM, CHUNK, &gregory_spec);
         Ok(Self {
             patches: pipeline(&shaders::emit_patches_comp::PROGRAM)?,
-            leaves: pipeline(if needs.gregory {
-                &shaders::emit_gregory_comp::PROGRAM
-            } else {
-                &shaders::emit_leaves_comp::PROGRAM
-            })?,
+            leaves: if needs.gregory { gregory()? } else { pipeline(&shaders::emit_leaves_comp::PROGRAM)? },
             cut: if needs.cuts { Some(pipeline(&shaders::emit_cut_comp::PROGRAM)?) } else { None },
             cut_gregory: if needs.cuts && needs.gregory {
                 Some(pipeline(&shaders::emit_gregory_cut_comp::PROGRAM)?)

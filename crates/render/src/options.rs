@@ -16,6 +16,16 @@ pub enum SurfaceMethod {
     Uniform,
 }
 
+/// How the control points of Gregory patches are made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GregoryPoints {
+    /// In two stages: of what limit points hand on (Loop et al. 2009, sections 4.1 and 4.2).
+    #[default]
+    TwoStage,
+    /// Straight from the cage's points, by a table of weights for each connectivity (section 4.3).
+    Stencil,
+}
+
 /// Where tessellated points lie between whole factors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Spacing {
@@ -96,6 +106,8 @@ pub struct FrameNeeds {
     pub tex_coords: bool,
     /// Irregular faces are Gregory patches ([`SurfaceMethod::Gregory`]).
     pub gregory: bool,
+    /// How their control points are made: as the surface's are ([`crate::SurfaceDesc::gregory_points`]).
+    pub gregory_points: GregoryPoints,
     /// Their normals are those of the rational patches, not of their Bezier form.
     pub exact_normals: bool,
     /// Dumps have colours.
@@ -114,6 +126,7 @@ impl FrameNeeds {
             displaced: false,
             tex_coords: false,
             gregory: false,
+            gregory_points: GregoryPoints::TwoStage,
             exact_normals: false,
             colors: false,
         }

@@ -42,6 +42,8 @@ pub(crate) struct PipelineOptions {
     pub displaced: bool,
     /// Texture coordinates are asked for.
     pub tex_coords: bool,
+    /// Gregory patches are made of the cage's points.
+    pub stencils: bool,
     /// Gregory patches have the normals of the rational patch.
     pub exact_normals: bool,
     /// Colours are asked for.
@@ -78,6 +80,7 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
             id: shaders::gregory_patch_lean_tese::SPEC_EXACT_NORMALS,
             bits: u32::from(options.exact_normals),
         },
+        SpecConstant { id: shaders::gregory_patch_tesc::SPEC_STENCIL, bits: u32::from(options.stencils) },
         SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_COLORED, bits: u32::from(options.colors) },
     ];
     let view_constant =

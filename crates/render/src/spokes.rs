@@ -21,10 +21,10 @@ impl SpokeStage {
         compute_pipeline(device, &PROGRAM).map(Self)
     }
 
-    /// Records one dispatch over all limit points in use.
+    /// Records one dispatch over all limit points in use; none if all patches have stencils.
     pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
         let phase = surface.phases.limits();
-        if surface.phases.rows[phase][1] == 0 {
+        if surface.phases.rows[phase][1] == 0 || !surface.tables.gregory.needs_spokes() {
             return;
         }
         let (tables, frame, heads) = (&surface.buffers, &surface.frame, &surface.lists.heads);

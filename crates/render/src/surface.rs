@@ -20,7 +20,7 @@ use crate::error::Error;
 use crate::lists::{Capacities, Phases, Status};
 use crate::marks::Marks;
 use crate::objects::{CageFacts, MeshFacts, ObjectDesc};
-use crate::options::{FrameOptions, SurfaceMethod};
+use crate::options::{FrameOptions, GregoryPoints, SurfaceMethod};
 use crate::upload::address;
 
 /// What to make of cages.
@@ -34,6 +34,8 @@ pub struct SurfaceDesc {
     pub crease_patches: CreasePatches,
     /// Meshes may be displaced ([`Surface::displace`]).
     pub displaced: bool,
+    /// How the control points of Gregory patches are made.
+    pub gregory_points: GregoryPoints,
 }
 
 impl SurfaceDesc {
@@ -84,6 +86,7 @@ pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preproc
         crease_patches: desc.crease_patches,
         displaced: desc.displaced,
         gregory: desc.method == SurfaceMethod::Gregory,
+        gregory_stencils: desc.method == SurfaceMethod::Gregory && desc.gregory_points == GregoryPoints::Stencil,
         ignores_channels: !desc.displaced,
     };
     let mut times = PreprocessTimes::default();
@@ -304,6 +307,9 @@ impl Surface {
             irregular: address(&tables.irregular),
             gregory: address(&tables.gregory),
             spokes: address(&frame.spoke_points),
+            stencils: address(&tables.stencil_faces),
+            stencil_points: address(&tables.stencil_rings),
+            stencil_weights: address(&tables.stencil_weights),
             ptex_faces: address(&tables.ptex_faces),
             neighbour_first: address(&tables.neighbours[0]),
             neighbours: address(&tables.neighbours[1]),

@@ -46,6 +46,8 @@ pub struct RefineOptions {
     pub displaced: bool,
     /// Irregular faces are drawn as Gregory patches: `max_level` is 0.
     pub gregory: bool,
+    /// Their control points have stencils over the cage's points ([`crate::tables::GregoryStencils`]).
+    pub gregory_stencils: bool,
     /// Face-varying channels are left out: the surface is not refined for their sake.
     pub ignores_channels: bool,
 }

@@ -34,7 +34,14 @@ pub fn run(bench: &Bench, device: &Device, cage: &Cage) -> Result<Vec<CreaseRow>
         for (name, crease_patches) in kinds {
             bench.console.progress(format_args!("{}: tess factor {tess}, {name}", cage.path().display()));
             let watertight = !bench.arguments.no_watertight;
-            let setting = Setting { method: SurfaceMethod::Fas, level, tess_factor: tess, crease_patches, watertight };
+            let setting = Setting {
+                method: SurfaceMethod::Fas,
+                level,
+                tess_factor: tess,
+                crease_patches,
+                watertight,
+                ..Setting::default()
+            };
             let fas = measure(bench, device, cage, setting)?;
             let ratio = fas.wall_ms / *refined_ms.get_or_insert(fas.wall_ms);
             rows.push(CreaseRow { tess, crease_patches: name, fas, ratio });

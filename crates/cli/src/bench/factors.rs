@@ -31,7 +31,14 @@ pub fn run(bench: &Bench, device: &Device, cage: &Cage) -> Result<Vec<FactorRow>
         let level = isolation_level(tess, bench.arguments.max_level);
         let crease_patches = CreasePatches::default();
         let watertight = !bench.arguments.no_watertight;
-        let setting = Setting { method: SurfaceMethod::Fas, level, tess_factor: tess, crease_patches, watertight };
+        let setting = Setting {
+            method: SurfaceMethod::Fas,
+            level,
+            tess_factor: tess,
+            crease_patches,
+            watertight,
+            ..Setting::default()
+        };
         let fas = measure(bench, device, cage, setting)?;
         let peer = bench.peer.as_ref().map(|peer| peer.frame(bench, cage, level, tess)).transpose()?;
         let ratio = peer.as_ref().map(|peer| fas.wall_ms / peer.total_ms);

@@ -37,7 +37,7 @@ pub fn run(bench: &Bench, device: &Device, cage: &Cage) -> Result<Vec<LevelRow>>
     let row = |level: u32| {
         let tess_factor = (level as f32).exp2();
         let (crease_patches, watertight) = (CreasePatches::default(), !bench.arguments.no_watertight);
-        let setting = |method| Setting { method, level, tess_factor, crease_patches, watertight };
+        let setting = |method| Setting { method, level, tess_factor, crease_patches, watertight, ..Setting::default() };
         bench.console.progress(format_args!("{}: fas, level {level}", cage.path().display()));
         let fas = measure(bench, device, cage, setting(SurfaceMethod::Fas))?;
         bench.console.progress(format_args!("{}: uniform, level {level}", cage.path().display()));

@@ -1,11 +1,12 @@
 //! What is measured of a frame: medians of frames in each of which the cage has moved.
 
 use anyhow::Result;
-use planish_gpu::Device;
-use planish_render::{Density, FrameNeeds, Layers, SurfaceDesc, SurfaceMethod, View};
+use planish_gpu::{Device, SubmitReport};
+use planish_render::{Density, FrameNeeds, GregoryPoints, Layers, SurfaceDesc, SurfaceMethod, View};
 use planish_subdiv::refine::CreasePatches;
 use serde::Serialize;
 
+use super::gregory::fetched_points;
 use super::{Bench, median};
 use crate::cage::Cage;
 use crate::offline::{Plan, Session, frame_camera, frame_needs, frame_options};
@@ -25,10 +26,31 @@ pub struct Measured {
     pub table_bytes: u64,
     /// Time of refinement and tables, once a topology.
     pub preprocess_ms: f64,
+    /// Runs of the tessellation stages.
+    pub tessellation: TessellationRuns,
+    /// Points and vectors that a control shader reads for a Gregory patch, in the mean.
+    pub gregory_fetched_points: f64,
     /// Median times of the stages.
     pub gpu_ms: GpuStats,
     /// Median time from cage upload to fence.
     pub wall_ms: f64,
+}
+
+/// What pipeline statistics count of a frame's draws; 0 where a device has none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct TessellationRuns {
+    pub control_patches: u64,
+    pub evaluations: u64,
+}
+
+impl TessellationRuns {
+    fn new(report: &SubmitReport) -> Self {
+        let draws = report.statistics.iter().filter(|(name, _)| name == "draw");
+        draws.fold(Self::default(), |sum, (_, counted)| Self {
+            control_patches: sum.control_patches + counted.tessellation_control_patches,
+            evaluations: sum.evaluations + counted.tessellation_evaluation_invocations,
+        })
+    }
 }
 
 impl Measured {
@@ -44,7 +66,7 @@ impl Measured {
 pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) -> Result<Measured> {
     let arguments = bench.arguments;
     let camera = cage.default_view()?;
-    let Setting { method, level, tess_factor, crease_patches, watertight } = setting;
+    let Setting { method, level, tess_factor, crease_patches, watertight, gregory_points } = setting;
     let objects = cage.objects(&camera);
     let mut plan = Plan {
         frame_camera: frame_camera(&camera, arguments.size),
@@ -52,11 +74,12 @@ pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) ->
             watertight,
             displaced: cage.is_displaced(),
             gregory: method == SurfaceMethod::Gregory,
+            gregory_points,
             ..frame_needs(arguments.spacing.into(), tess_factor, &objects)
         },
         objects,
         camera,
-        desc: SurfaceDesc { method, level, crease_patches, displaced: cage.is_displaced() },
+        desc: SurfaceDesc { method, level, crease_patches, displaced: cage.is_displaced(), gregory_points },
         options: frame_options(method, Density::Tess(tess_factor), false),
     };
     plan.cull(arguments.no_cull);
@@ -66,27 +89,32 @@ pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) ->
     let camera = session.camera;
     session.draw(&images, &camera, &cage_motion.positions(0))?;
     let mut frames = Vec::new();
+    let mut tessellation = TessellationRuns::default();
     for frame in 1..=arguments.repeat as i32 {
         let cages = cage_motion.positions(frame);
         let drawn = session.draw(&images, &camera, &cages)?;
         frames.push(FrameStats::drawn(frame, &session, &drawn));
+        tessellation = TessellationRuns::new(&drawn.report);
     }
     let (surface, times) = (&session.surface, session.surface.times());
     Ok(Measured {
         table_bytes: surface.memory().tables,
         preprocess_ms: times.topology + times.tables,
+        tessellation,
+        gregory_fetched_points: fetched_points(surface.tables()),
         ..medians(surface.tables().last_level, &frames)
     })
 }
 
 /// What is drawn.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Setting {
     pub method: SurfaceMethod,
     pub level: u32,
     pub tess_factor: f32,
     pub crease_patches: CreasePatches,
     pub watertight: bool,
+    pub gregory_points: GregoryPoints,
 }
 
 fn medians(level: u32, frames: &[FrameStats]) -> Measured {

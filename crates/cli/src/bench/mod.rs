@@ -6,6 +6,7 @@
 //! | `factors` | fas at several tess factors |
 //! | `creases` | crease patches of every kind with refined creases |
 //! | `seams` | frames whose seams have the same bits on both sides with frames of patches by themselves |
+//! | `gregory` | both implementations of Gregory patches with fas and dfas |
 //! | `path` | fas with dfas, along a camera path or from the scene's cameras; `chart` draws it |
 //! | `cpu` | the building of tables alone |
 //! | `measure` | what all of them measure of a frame |
@@ -15,6 +16,7 @@ mod chart;
 mod cpu;
 mod creases;
 mod factors;
+mod gregory;
 mod levels;
 mod measure;
 mod path;
@@ -47,6 +49,8 @@ pub fn run(arguments: &BenchArguments, console: &Console) -> Result<()> {
         bench.scenes(Some(&device), |cage| creases::run(&bench, &device, cage))?;
     } else if arguments.seams {
         bench.scenes(Some(&device), |cage| seams::run(&bench, &device, cage))?;
+    } else if arguments.gregory {
+        bench.scenes(Some(&device), |cage| gregory::run(&bench, &device, cage))?;
     } else if arguments.tess.is_empty() {
         bench.scenes(Some(&device), |cage| levels::run(&bench, &device, cage))?;
     } else {

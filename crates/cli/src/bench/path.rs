@@ -3,7 +3,7 @@
 
 use anyhow::{Result, bail};
 use planish_gpu::Device;
-use planish_render::{Density, Layers, SurfaceMethod, View};
+use planish_render::{Density, GregoryPoints, Layers, SurfaceMethod, View};
 use planish_scene::Camera;
 use planish_subdiv::refine::CreasePatches;
 use serde::Serialize;
@@ -108,6 +108,7 @@ impl Method {
             spacing: arguments.spacing.into(),
             size: arguments.size,
             watertight: !arguments.no_watertight,
+            gregory_points: GregoryPoints::TwoStage,
             exact_normals: false,
             options: frame_options(method, Density::EdgePixels(arguments.edge_pixels), false),
         };

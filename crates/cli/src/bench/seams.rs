@@ -31,7 +31,14 @@ pub fn run(bench: &Bench, device: &Device, cage: &Cage) -> Result<Vec<SeamRow>> 
         for (name, method) in [("fas", SurfaceMethod::Fas), ("dfas", SurfaceMethod::Dfas)] {
             bench.console.progress(format_args!("{}: tess factor {tess}, {name}", cage.path().display()));
             let crease_patches = CreasePatches::default();
-            let setting = |watertight| Setting { method, level, tess_factor: tess, crease_patches, watertight };
+            let setting = |watertight| Setting {
+                method,
+                level,
+                tess_factor: tess,
+                crease_patches,
+                watertight,
+                ..Setting::default()
+            };
             let by_themselves = measure(bench, device, cage, setting(false))?;
             let watertight = measure(bench, device, cage, setting(true))?;
             let ratio = watertight.wall_ms / by_themselves.wall_ms;

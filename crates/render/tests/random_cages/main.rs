@@ -129,7 +129,7 @@ proptest! {
         level in 1..=5_u32,
         crease_patches in crease_patches(),
     ) {
-        let desc = SurfaceDesc { method: SurfaceMethod::Dfas, level, crease_patches, displaced: false };
+        let desc = SurfaceDesc { method: SurfaceMethod::Dfas, level, crease_patches, ..SurfaceDesc::default() };
         if let Err(fault) = check(recipe, &desc) {
             prop_assert!(false, "{fault}");
         }

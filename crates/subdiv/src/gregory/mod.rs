@@ -5,12 +5,14 @@
 //! the spokes at its ends, which both sides read; so both have the same bits. Here in f64, for tests and for measuring; the shaders are
 //! `glsl/shared/gregory.glsl`.
 
+mod forms;
 mod part;
 mod quad;
 mod spokes;
 mod surface;
 mod triangle;
 
+pub(crate) use forms::{Composer, Form, SpokeForms, sum_forms};
 pub use part::part_points;
 pub use quad::{evaluate_quad, quad_points};
 pub(crate) use spokes::{RowPlace, SectorSpokes, sector_of, sector_spokes};
@@ -65,17 +67,18 @@ pub(crate) fn sum<const N: usize>(terms: [(f64, Vec3); N]) -> Vec3 {
     std::array::from_fn(|c| terms.iter().map(|(w, p)| w * p[c]).sum())
 }
 
-/// Equation (6), with its subscripts: the face point beside an edge point `edge` of a corner, the edge's other end point being `far`;
-/// `r` points into the face, `degree` is 3 for quads, 4 for triangles.
-pub(crate) fn face_point(degree: f64, corner: &Corner, edge: Vec3, far_cosine: f64, far: Vec3, r: Vec3) -> Vec3 {
-    let (own, other) = (corner.cosine, far_cosine);
+/// Equation (6): the weights of the corner, of an edge point of it, of the edge's other edge point and of r, that make the face point
+/// beside the edge point. `degree` is 3 for quads, 4 for triangles; `own` and `other` are the cosines at the corner and at the edge's
+/// other end.
+pub(crate) fn face_point_weights(degree: f64, own: f64, other: f64) -> [f64; 4] {
     let scale = 1.0 / degree;
-    sum([
-        (scale * other, corner.position),
-        (scale * (degree - 2.0 * own - other), edge),
-        (scale * 2.0 * own, far),
-        (scale, r),
-    ])
+    [scale * other, scale * (degree - 2.0 * own - other), scale * 2.0 * own, scale]
+}
+
+/// The face point beside an edge point `edge` of a corner, the edge's other one being `far`; `r` points into the face.
+pub(crate) fn face_point(degree: f64, corner: &Corner, edge: Vec3, far_cosine: f64, far: Vec3, r: Vec3) -> Vec3 {
+    let [of_corner, of_edge, of_far, of_r] = face_point_weights(degree, corner.cosine, far_cosine);
+    sum([(of_corner, corner.position), (of_edge, edge), (of_far, far), (of_r, r)])
 }
 
 /// The control points of a face of N corners: p, e+, e-, f+, f- of each.

@@ -1,12 +1,12 @@
 //! A mesh' Gregory patches in f64, from the tables that the GPU reads.
 
 use super::{
-    Corner, EdgeFields, Normals, SpokePoints, Vec3, evaluate_quad, evaluate_triangle, part_barycentric, part_points,
-    quad_points, sum, triangle_points,
+    Corner, EdgeFields, Normals, POINTS_PER_CORNER, SpokePoints, Vec3, evaluate_quad, evaluate_triangle,
+    part_barycentric, part_points, quad_points, sum, triangle_points,
 };
 use crate::patch::SurfacePoint;
 use crate::stencil::StencilRow;
-use crate::tables::{GregoryFace, GregoryKind, Tables};
+use crate::tables::{GregoryFace, GregoryKind, ROWS_PER_CORNER, Tables};
 use crate::topology::NONE;
 
 /// The limit points and spokes of a mesh.
@@ -88,6 +88,33 @@ impl<'a> GregorySurface<'a> {
             }
         };
         Some(GregoryPatch { kind: face.kind, points, edges })
+    }
+
+    /// The control points of an irregular face by its stencils, and the four vectors across each edge; none if it has no stencils.
+    /// The corners are the limit positions.
+    pub fn stencil_points(&self, irregular_face: u32, cage: &[[f32; 3]]) -> Option<(Vec<Vec3>, Vec<Vec3>)> {
+        let stencils = &self.tables.gregory.stencils;
+        let face = stencils.faces.get(irregular_face as usize).filter(|face| !face.is_of_spokes())?;
+        let table = stencils.connectivities[face.connectivity as usize];
+        let corner_count = table.corner_count as usize;
+        let ring = &stencils.rings[face.first_point as usize..][..table.point_count as usize];
+        let at = |point: u32| cage[point as usize].map(f64::from);
+        let row = |row: usize, corner: usize| {
+            let origin = at(face.corners[corner]);
+            ring.iter().fold([0.0; 3], |made, &[point, column]| {
+                let place = table.first_weight as usize + column as usize * ROWS_PER_CORNER * corner_count + row;
+                let weight = f64::from(stencils.weights[place]);
+                sum([(1.0, made), (weight, at(point)), (-weight, origin)])
+            })
+        };
+        let seats = self.tables.gregory.faces[irregular_face as usize].limits;
+        let points =
+            (0..POINTS_PER_CORNER * corner_count).map(|i| match (i / POINTS_PER_CORNER, i % POINTS_PER_CORNER) {
+                (corner, 0) => self.limit(seats[corner])[0],
+                (corner, which) => sum([(1.0, at(face.corners[corner])), (1.0, row(4 * corner + which - 1, corner))]),
+            });
+        let across = (0..4 * corner_count).map(|i| row(4 * corner_count + i, (i / 4 + i % 4 / 2) % corner_count));
+        Some((points.collect(), across.collect()))
     }
 
     fn corner(&self, face: &GregoryFace, seat: usize, out: usize, into: usize) -> Corner {

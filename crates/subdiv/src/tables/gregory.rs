@@ -2,9 +2,11 @@
 
 use std::collections::HashMap;
 
-use crate::gregory::{RowPlace, SectorSpokes, sector_of, sector_spokes};
+use crate::gregory::{Composer, RowPlace, SectorSpokes, sector_of, sector_spokes};
+use crate::limit::limit_mask;
 use crate::refine::{Refinement, child_half_edge};
 use crate::stencil::StencilRow;
+use crate::tables::gregory_stencils::{GregoryStencils, StencilBuilder};
 use crate::tables::limits::{LimitPoints, children};
 use crate::tables::seams::{Border, border_along};
 use crate::topology::{Level, NONE};
@@ -115,6 +117,17 @@ impl GregoryFace {
         owners: [EdgeOwner { faces: [0; 2], flags: 0 }; 4],
         part_before: NONE,
     };
+
+    /// The spoke at the first end of each edge between vertices of the cage.
+    pub(super) fn cage_edges(&self) -> impl Iterator<Item = u32> {
+        let count = match self.kind {
+            GregoryKind::None => 0,
+            GregoryKind::Quad => 4,
+            GregoryKind::PartOfTriangle(_) => 3,
+            GregoryKind::PartOfNgon => 2,
+        };
+        self.first.into_iter().take(count)
+    }
 }
 
 /// Gregory patches of a mesh, or of several.
@@ -130,6 +143,8 @@ pub struct GregoryTable {
     pub indices: Vec<u32>,
     /// And their weights.
     pub weights: Vec<f32>,
+    /// Stencils of the control points, if they were asked for ([`crate::refine::RefineOptions::gregory_stencils`]).
+    pub stencils: GregoryStencils,
 }
 
 /// Fills the table as the faces come.
@@ -142,6 +157,7 @@ pub(super) struct GregoryBuilder<'a> {
     /// Level and limit point to what is known of its spokes.
     known: HashMap<(u32, u32), Known>,
     interned: HashMap<Vec<u32>, u32>,
+    stencils: Option<StencilBuilder<'a>>,
 }
 
 /// The spokes of a limit point.
@@ -151,7 +167,8 @@ struct Known {
 }
 
 impl<'a> GregoryBuilder<'a> {
-    pub fn new(refinement: &'a Refinement, first_points: &'a [u32]) -> Self {
+    /// `composer` carries points back to the cage: where stencils are asked for.
+    pub fn new(refinement: &'a Refinement, first_points: &'a [u32], composer: Option<Composer<'a>>) -> Self {
         let first_children = refinement
             .splits
             .first()
@@ -163,6 +180,7 @@ impl<'a> GregoryBuilder<'a> {
             first_children,
             known: HashMap::new(),
             interned: HashMap::new(),
+            stencils: composer.map(StencilBuilder::new),
         }
     }
 
@@ -172,12 +190,30 @@ impl<'a> GregoryBuilder<'a> {
         for (&(_, limit), known) in &self.known {
             self.table.of_limit[limit as usize] = [known.first, known.spokes.weights.len() as u32];
         }
+        let GregoryTable { faces, spokes, indices, .. } = &self.table;
+        if let Some(stencils) = self.stencils {
+            let own_point = |spoke: u32| indices[spokes[spoke as usize].row.first_index as usize];
+            self.table.stencils = stencils.finish(faces, spokes, own_point);
+        }
         self.table
     }
 
     /// Irregular faces that are never drawn.
     pub fn push_nothing(&mut self, count: u32) {
         self.table.faces.extend(std::iter::repeat_n(GregoryFace::NOTHING, count as usize));
+        if let Some(stencils) = &mut self.stencils {
+            stencils.push_of_spokes(count);
+        }
+    }
+
+    fn push(&mut self, face: GregoryFace) {
+        match &mut self.stencils {
+            // Edits change points between the levels.
+            Some(stencils) if !self.refinement.edits.is_empty() => stencils.push_of_spokes(1),
+            Some(stencils) => stencils.push_face(&face, &self.table.spokes),
+            None => {}
+        }
+        self.table.faces.push(face);
     }
 
     /// An irregular quad of a level; `places` are those of the level's bicubic patches by face.
@@ -190,7 +226,7 @@ impl<'a> GregoryBuilder<'a> {
             } else {
                 self.part_of_ngon(k, face, corner, limits)
             };
-            return self.table.faces.push(part);
+            return self.push(part);
         }
         let start = level.half_edges(face).start;
         let mut quad = GregoryFace { kind: GregoryKind::Quad, ..GregoryFace::NOTHING };
@@ -203,7 +239,7 @@ impl<'a> GregoryBuilder<'a> {
             quad.sharp |= u8::from(level.is_infinite(edge)) << i;
             quad.owners[i as usize] = EdgeOwner::of(level, edge);
         }
-        self.table.faces.push(quad);
+        self.push(quad);
     }
 
     /// The corner (half-edge) of the face of level 0, of other than four sides, that a face of level 1 is the part of.
@@ -317,6 +353,11 @@ impl<'a> GregoryBuilder<'a> {
                 row,
             });
         }
+        if let Some(stencils) = &mut self.stencils {
+            let (points, weights) = limit_mask(row_level, row_corner);
+            let points = points.into_iter().map(|point| self.first_points[row_k as usize] + point);
+            stencils.push_limit(&spokes, first_point + vertex, first_point, &points.zip(weights).collect::<Vec<_>>());
+        }
         Known { first, spokes }
     }
 
@@ -348,6 +389,13 @@ fn place_of(spokes: &SectorSpokes, corner: u32) -> u32 {
 }
 
 impl GregoryTable {
+    /// Whether points of some patches are made of spokes, of all where there are no stencils.
+    pub fn needs_spokes(&self) -> bool {
+        let mut stencils = self.faces.iter().zip(&self.stencils.faces);
+        self.stencils.faces.is_empty()
+            || stencils.any(|(face, stencil)| face.kind != GregoryKind::None && stencil.is_of_spokes())
+    }
+
     /// Appends what belongs to limit points of another table, whose limit points, points and spokes follow those here.
     pub(super) fn append_spokes(&mut self, other: &Self, points: &[u32]) {
         let first_spoke = self.spokes.len() as u32;

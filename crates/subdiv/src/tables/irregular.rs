@@ -1,5 +1,6 @@
 //! The forest of irregular faces that frames select a cut of, and the patches between them.
 
+use crate::gregory::Composer;
 use crate::patch::{PatchInfo, RegularPatch, control_points};
 use crate::refine::{CreasePatches, Refinement, child_half_edge};
 use crate::tables::Tables;
@@ -71,7 +72,9 @@ pub(super) fn add_faces(tables: &mut Tables, refinement: &Refinement) {
         faces.add_irregular(tables, refinement, &edges, levels.get(k + 1), &mut limits);
     }
     if refinement.options.gregory {
-        let mut gregory = GregoryBuilder::new(refinement, &first_points);
+        let has_stencils = refinement.options.gregory_stencils;
+        let composer = has_stencils.then(|| Composer::new(&tables.stencils, tables.cage_point_count));
+        let mut gregory = GregoryBuilder::new(refinement, &first_points, composer);
         levels.iter().for_each(|faces| faces.add_gregory(&mut gregory, &mut limits));
         tables.gregory = gregory.finish(limits.count());
     }

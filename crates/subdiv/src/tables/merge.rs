@@ -98,7 +98,17 @@ impl Tables {
             merged.append_rows(part, points);
             merged.append_limits(part, mesh, points);
         }
+        let stencils: Vec<(u32, Vec<u32>)> = parts
+            .iter()
+            .zip(&points)
+            .map(|(part, points)| merged.gregory.stencils.append_tables(&part.gregory.stencils, points))
+            .collect();
         for k in 0..=last_level as usize {
+            for ((part, points), (first, tables)) in parts.iter().zip(&points).zip(&stencils) {
+                let range = part.irregular_ranges.get(k).cloned().unwrap_or_default();
+                let own = part.gregory.stencils.faces.get(to_usize(range)).unwrap_or_default();
+                merged.gregory.stencils.append_faces(own, *first, tables, points);
+            }
             let first_edit = merged.edits.len() as u32;
             merged.hierarchical_edit_count = 0;
             for ((part, mesh), points) in parts.iter().zip(&mut meshes).zip(&points) {
@@ -122,6 +132,8 @@ impl Tables {
             self.limits.indices.len(),
             self.limits.weights.len(),
             self.gregory.indices.len(),
+            self.gregory.stencils.rings.len(),
+            self.gregory.stencils.weights.len(),
             self.stars.indices.len(),
             self.patches.len(),
             self.irregular.len(),

@@ -5,6 +5,7 @@
 
 mod face_varying;
 mod gregory;
+mod gregory_stencils;
 mod irregular;
 mod limits;
 mod lists;
@@ -25,6 +26,7 @@ use crate::stencil::{SharedWeights, StencilTable, has_large_faces};
 pub use crate::selection::PatchCounts;
 pub use face_varying::{FaceVaryingEvaluator, FaceVaryingPatch, FaceVaryingTable, TexTree};
 pub use gregory::{EdgeOwner, GregoryFace, GregoryKind, GregoryTable, Spoke};
+pub use gregory_stencils::{Connectivity, GregoryStencils, MAX_RING_POINTS, ROWS_PER_CORNER, StencilFace};
 pub use irregular::IrregularFace;
 pub use lists::IndexLists;
 pub use merge::MeshRanges;

@@ -195,3 +195,101 @@ fn random_cages_have_patches_near_their_limit_surface() {
     }
     assert!(compared > 1000);
 }
+
+fn stencil_tables(mesh: &ControlMesh) -> Tables {
+    let options = RefineOptions { gregory: true, gregory_stencils: true, ..RefineOptions::default() };
+    Tables::new(&Refinement::new(mesh, options).expect("a cage"))
+}
+
+/// Largest difference of stencils from the points that spokes make, over the largest coordinate; and how many faces have stencils.
+fn stencil_error(tables: &Tables, cage: &[[f32; 3]]) -> (f64, usize) {
+    let surface = GregorySurface::new(tables, cage);
+    let size = cage.iter().flatten().fold(0.0_f64, |m, c| m.max(f64::from(c.abs())));
+    let (mut largest, mut compared) = (0.0_f64, 0);
+    for face in 0..tables.irregular.len() as u32 {
+        let (Some(patch), Some((points, across))) = (surface.patch(face), surface.stencil_points(face, cage)) else {
+            continue;
+        };
+        let expected = patch.points.iter().chain(patch.edges.iter().flat_map(|edge| &edge.across));
+        let made = points.iter().chain(&across);
+        assert_eq!(made.clone().count(), expected.clone().count());
+        largest = made.zip(expected).fold(largest, |m, (a, b)| m.max(length(minus(*a, *b)) / size));
+        compared += 1;
+    }
+    (largest, compared)
+}
+
+#[test]
+fn stencils_make_the_points_that_spokes_make() {
+    let mut all = cages();
+    all.extend((0..200).map(|seed| (format!("seed {seed}"), random(seed))));
+    let mut compared = 0;
+    for (name, mesh) in all.iter().filter(|(_, mesh)| mesh.edits.is_empty()) {
+        let (off, faces) = stencil_error(&stencil_tables(mesh), &mesh.positions);
+        assert!(off < 1e-6, "{name}: off by {off}");
+        compared += faces;
+    }
+    assert!(compared > 1000, "{compared} faces");
+}
+
+#[test]
+fn faces_of_one_connectivity_share_a_table() {
+    for n in [3, 5, 6, 7, 12, 40] {
+        let tables = stencil_tables(&pole(n, 3));
+        let stencils = &tables.gregory.stencils;
+        let at_pole = stencils.faces.iter().filter(|face| !face.is_of_spokes()).count();
+        assert!(at_pole >= n as usize);
+        // All faces at the pole are alike.
+        assert_eq!(stencils.connectivities.len(), 1, "valence {n}");
+        assert_eq!(stencils.connectivities[0].point_count, 2 * n + 8, "valence {n}");
+    }
+}
+
+#[test]
+fn meshes_of_one_connectivity_share_a_table_when_merged() {
+    let (a, b) = (stencil_tables(&pole(5, 3)), stencil_tables(&pole(7, 3)));
+    let cages = [pole(5, 3), pole(7, 3), pole(5, 3)].map(|mesh| mesh.positions).concat();
+    let (merged, _) = Tables::merge(vec![a.clone(), b, a]).expect("small tables");
+    assert_eq!(merged.gregory.stencils.connectivities.len(), 2);
+    let (off, faces) = stencil_error(&merged, &cages);
+    assert!(off < 1e-6 && faces == 5 + 7 + 5, "off by {off} in {faces} faces");
+}
+
+#[test]
+fn both_faces_at_an_edge_sum_the_same_weights_in_the_same_order() {
+    for (name, mesh) in cages() {
+        let tables = stencil_tables(&mesh);
+        let stencils = &tables.gregory.stencils;
+        let mut rows: std::collections::HashMap<(u32, bool), Vec<(u32, u32)>> = std::collections::HashMap::new();
+        let mut shared = 0;
+        for (face, stencil) in tables.gregory.faces.iter().zip(&stencils.faces).filter(|(_, s)| !s.is_of_spokes()) {
+            let table = stencils.connectivities[stencil.connectivity as usize];
+            let n = table.corner_count as usize;
+            let ring = &stencils.rings[stencil.first_point as usize..][..table.point_count as usize];
+            let row = |row: usize, sign: f32| -> Vec<(u32, u32)> {
+                let weight =
+                    |column: u32| stencils.weights[table.first_weight as usize + column as usize * 8 * n + row];
+                let terms = ring.iter().map(|&[point, column]| (point, weight(column)));
+                terms.filter(|term| term.1 != 0.0).map(|(point, weight)| (point, (sign * weight).to_bits())).collect()
+            };
+            for edge in 0..n {
+                // By the spoke: its edge point and its vector across, to the left of it.
+                let next = (edge + 1) % n;
+                let found = [
+                    ((face.first[edge], false), row(4 * edge, 1.0)),
+                    ((face.last[edge], false), row(4 * next + 1, 1.0)),
+                    ((face.first[edge], true), row(4 * n + 4 * edge, 1.0)),
+                    ((face.last[edge], true), row(4 * n + 4 * edge + 3, -1.0)),
+                ];
+                for (key, row) in found {
+                    if let Some(known) = rows.get(&key) {
+                        assert_eq!(known, &row, "{name}: spoke {key:?}");
+                        shared += 1;
+                    }
+                    rows.insert(key, row);
+                }
+            }
+        }
+        assert!(shared > 0 || name == "sheet" || name.starts_with("prism"), "{name} shares nothing");
+    }
+}
