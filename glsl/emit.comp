@@ -95,6 +95,9 @@ void main()
     }
     barrier();
     bool is_seen = thread < list_length(push.scene.v.heads, LIST_LEAVES);
+    if (GREGORY && is_seen) {
+        is_seen = gregory_kind(push.scene.v.gregory.v[push.scene.v.leaf_items.v[thread].place].flags) == GREGORY_NONE;
+    }
     DrawEntry entry;
     if (is_seen) {
         ListItem item = push.scene.v.leaf_items.v[thread];
@@ -371,6 +374,9 @@ void main()
     barrier();
     uint thread = group * CHUNK + gl_LocalInvocationID.x;
     bool is_seen = thread < list_length(push.scene.v.heads, LIST_LEAVES);
+    if (is_seen) {
+        is_seen = gregory_kind(push.scene.v.gregory.v[push.scene.v.leaf_items.v[thread].place].flags) != GREGORY_NONE;
+    }
     ListItem item = ListItem(0u, 0u);
     uint pieces = 0u;
     uint vertices = 1u;

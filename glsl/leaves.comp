@@ -17,7 +17,7 @@ void main()
         return;
     }
     ListItem item = push.scene.v.leaf_items.v[thread];
-    if (GREGORY) {
+    if (GREGORY && gregory_kind(push.scene.v.gregory.v[item.place].flags) != GREGORY_NONE) {
         for (uint i = 0; i < 4; ++i) {
             mark_corner(push.scene, push.scene.v.gregory.v[item.place].limits[i]);
             if ((push.scene.v.irregular.v[item.place].flags >> (FACE_STAR_LIMITS_SHIFT + i) & 1u) != 0u) {

@@ -5,7 +5,7 @@
 #include "scene.glsl"
 #include "spacing.glsl"
 
-uint gregory_kind(GregoryFace face) { return min(face.flags & 7u, GREGORY_TRIANGLE); }
+uint gregory_kind(GregoryFace face) { return gregory_kind(face.flags); }
 uint gregory_part(GregoryFace face) { return (face.flags & 7u) - GREGORY_TRIANGLE; }
 bool gregory_is_sharp(GregoryFace face, uint edge) { return (face.flags >> (4u + edge) & 1u) != 0u; }
 

@@ -102,6 +102,8 @@ struct GregoryStencil {
     uint spoke_edges;  // edges whose points are those of the spokes, one bit each
 };
 
+uint gregory_kind(uint flags) { return min(flags & 7u, GREGORY_TRIANGLE); }
+
 // A limit point's weights for what it gives to the patches along an edge.
 struct Spoke {
     vec2 along;      // of its tangents in the edge point

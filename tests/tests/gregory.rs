@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 
 use planish_tests::folder::temporary;
 use planish_tests::judge::{check, check_approximation};
+use planish_tests::oracle::Report;
 use planish_tests::parallel::check_all;
 use planish_tests::ply::{Dump, Vertex};
 use planish_tests::program::Planish;
-use planish_tests::repository::{is_about_rules, is_edited, models, root, scene, scenes};
+use planish_tests::repository::{is_about_rules, is_edited, models, root, scene, scenes, stem};
 
 /// Hierarchical edits are refused.
 fn meshes() -> Vec<PathBuf> {
@@ -77,6 +78,36 @@ fn regular_faces_are_those_of_method_fas_to_the_bit() {
 }
 
 #[test]
+fn end_caps_are_closed_and_cover_every_face() {
+    let flags = [
+        "--method fas --max-level 1 --tess 9.4",
+        "--method dfas --max-level 2 --edge-pixels 2 --size 160x90 --spacing equal",
+        "--method dfas --max-level 0 --tess 5 --spacing fractional-even",
+    ];
+    let mut meshes = meshes();
+    meshes.retain(|mesh| !stem(mesh).starts_with("uv_") && !stem(mesh).starts_with("color_"));
+    let cases: Vec<_> = meshes.into_iter().zip(flags.into_iter().cycle()).step_by(2).collect();
+    check_all(&cases, |(mesh, flags)| check_approximation(mesh, &format!("--end-cap gregory {flags}")).map(|_| ()));
+}
+
+#[test]
+fn end_caps_come_nearer_to_the_limit_surface_with_every_level() {
+    let folder = temporary();
+    let path = folder.path().join("dump.ply");
+    for name in ["adjacent_extraordinary", "genus_2", "ngon_5"] {
+        let mesh = scene(name);
+        let error = |level: u32| {
+            let flags = format!("--method fas --end-cap gregory --max-level {level} --tess 12");
+            Planish::dump(&mesh, &path).flags(&flags).run().silent_success().unwrap();
+            Report::of(&mesh, &path).unwrap().number("rms_pos_err")
+        };
+        let errors = [1, 2, 3].map(error);
+        assert!(errors[0] < 1e-3 && errors[2] > 0.0, "{name}: {errors:?}");
+        assert!(errors[1] < 0.4 * errors[0] && errors[2] < 0.4 * errors[1], "{name}: {errors:?}");
+    }
+}
+
+#[test]
 fn instances_are_drawn_and_faces_of_any_sides_counted() {
     let folder = temporary();
     let path = folder.path().join("dump.ply");
@@ -108,4 +139,6 @@ fn what_gregory_patches_do_not_have_is_refused() {
     };
     refused("edit_vertex_add_1", "--tess 2", "expected no hierarchical edits");
     refused("crease_2_3", "--tess 2 --crease-patches single", "expected --crease-patches infinite or none");
+    let outcome = Planish::dump(&scene("edit_vertex_add_1"), &path).flags("--end-cap gregory --tess 2").run();
+    assert!(outcome.one_error(1).unwrap().contains("expected no hierarchical edits"));
 }

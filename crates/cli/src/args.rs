@@ -13,8 +13,8 @@ use planish_render::{Density, SurfaceMethod};
 use crate::aov::AovList;
 use crate::frames::FrameRange;
 use crate::names::{
-    CreasePatchesName, DisplacementKindName, DisplacementLayoutName, GregoryNormalsName, GregoryPointsName, LodName,
-    MethodName, SchemeName, SpacingName, ViewName, name_of,
+    CreasePatchesName, DisplacementKindName, DisplacementLayoutName, EndCapName, GregoryNormalsName, GregoryPointsName,
+    LodName, MethodName, SchemeName, SpacingName, ViewName, name_of,
 };
 use crate::values::{self, FrameRate, MAX_LEVEL};
 
@@ -245,6 +245,9 @@ pub struct SurfaceArguments {
     /// How control points of Gregory patches are made
     #[arg(long, value_enum, default_value_t = GregoryPointsName::TwoStage)]
     pub gregory: GregoryPointsName,
+    /// What irregular faces are drawn as where --max-level ends refinement, by methods fas and dfas
+    #[arg(long, value_enum, default_value_t = EndCapName::Quad)]
+    pub end_cap: EndCapName,
     /// Normals of Gregory patches: of their Bezier form, exact along edges, or of the rational patch
     #[arg(long, value_enum, default_value_t = GregoryNormalsName::Approximate)]
     pub gregory_normals: GregoryNormalsName,
@@ -439,8 +442,8 @@ mod tests {
 
     #[test]
     fn methods_and_schemes_to_come_are_refused_when_asked_for() {
-        let message = render("--method gregory").surface.method().unwrap_err().to_string();
-        assert_eq!(message, "method gregory is not available yet (available: fas, dfas, uniform)");
+        let message = render("--method table").surface.method().unwrap_err().to_string();
+        assert_eq!(message, "method table is not available yet (available: fas, dfas, gregory, uniform)");
         let message = render("--scheme loop").surface.check_available().unwrap_err().to_string();
         assert_eq!(message, "scheme loop is not available yet (available: catmull-clark)");
         assert!(render("--scheme catmull-clark").surface.check_available().is_ok());

@@ -46,7 +46,14 @@ fn surface_desc(arguments: &InfoArguments, cage: &Cage) -> Result<SurfaceDesc> {
             surface.check_available()?;
             let crease_patches = surface.crease_patches.into();
             let gregory_points = surface.gregory.into();
-            Ok(SurfaceDesc { method: surface.method()?, level, crease_patches, displaced: false, gregory_points })
+            Ok(SurfaceDesc {
+                method: surface.method()?,
+                level,
+                crease_patches,
+                end_cap: surface.end_cap.into(),
+                displaced: false,
+                gregory_points,
+            })
         }
         _ => Ok(Plan::unseen(cage, surface, &arguments.view, FrameRange::single(0))?.desc),
     }

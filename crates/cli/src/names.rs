@@ -1,7 +1,7 @@
 //! Names on the command line for what the renderer offers.
 
 use clap::ValueEnum;
-use planish_render::{GregoryPoints, Spacing, View};
+use planish_render::{EndCap, GregoryPoints, Spacing, View};
 use planish_scene::displacement::{DisplacementKind, DisplacementLayout};
 use planish_subdiv::refine::CreasePatches;
 
@@ -22,6 +22,24 @@ pub enum LodName {
     Vertex,
     /// Every object: from the distance to its centre
     Object,
+}
+
+/// End caps by name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum EndCapName {
+    /// Patch-filling quads between limit points, with one segment an edge
+    Quad,
+    /// Gregory patches, as fine as other patches
+    Gregory,
+}
+
+impl From<EndCapName> for EndCap {
+    fn from(name: EndCapName) -> Self {
+        match name {
+            EndCapName::Quad => Self::Quad,
+            EndCapName::Gregory => Self::Gregory,
+        }
+    }
 }
 
 /// Normals of Gregory patches by name.

@@ -7,8 +7,9 @@ use glam::{Affine3A, Mat4, Vec3};
 use planish_gpu::{Calls, Device, Encoder, Recorded, SubmitReport};
 use planish_render::density::{MAX_UNCUT_DENSITY, isolation_level, largest_density};
 use planish_render::{
-    Culling, Density, DrawOptions, DrawPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, GregoryPoints,
-    Layers, ObjectDesc, Selection, Spacing, Status, Surface, SurfaceDesc, SurfaceMethod, Targets, View, preprocess,
+    Culling, Density, DrawOptions, DrawPasses, EndCap, FrameCamera, FrameNeeds, FrameOptions, FrameStages,
+    GregoryPoints, Layers, ObjectDesc, Selection, Spacing, Status, Surface, SurfaceDesc, SurfaceMethod, Targets, View,
+    preprocess,
 };
 use planish_scene::Camera;
 use planish_subdiv::refine::CreasePatches;
@@ -25,6 +26,7 @@ pub struct PlanSetting {
     /// No irregularity is isolated deeper.
     pub max_level: u32,
     pub crease_patches: CreasePatches,
+    pub end_cap: EndCap,
     pub spacing: Spacing,
     /// Size of the image in pixels.
     pub size: [u32; 2],
@@ -83,6 +85,7 @@ impl Plan {
             method: surface.method()?,
             max_level: surface.max_level(),
             crease_patches: surface.crease_patches.into(),
+            end_cap: surface.end_cap.into(),
             spacing: surface.spacing.into(),
             size: view.size,
             watertight: !surface.no_watertight,
@@ -106,11 +109,20 @@ impl Plan {
         }
         let is_gregory = setting.method == SurfaceMethod::Gregory;
         let level = if is_gregory { 0 } else { isolation_level(density, setting.max_level) };
+        let desc = SurfaceDesc {
+            method: setting.method,
+            level,
+            crease_patches: setting.crease_patches,
+            end_cap: setting.end_cap,
+            displaced: cage.is_displaced(),
+            gregory_points: setting.gregory_points,
+        };
         let needs = FrameNeeds {
             watertight: setting.watertight,
             displaced: cage.is_displaced(),
             tex_coords: cage.has_uv(),
-            gregory: is_gregory,
+            gregory: desc.has_gregory_patches(),
+            filling: !is_gregory,
             gregory_points: setting.gregory_points,
             exact_normals: setting.exact_normals,
             colors: cage.has_colors(),
@@ -120,13 +132,7 @@ impl Plan {
             camera: cameras[0].clone(),
             frame_camera: frame_camera(&cameras[0], setting.size),
             objects,
-            desc: SurfaceDesc {
-                method: setting.method,
-                level,
-                crease_patches: setting.crease_patches,
-                displaced: cage.is_displaced(),
-                gregory_points: setting.gregory_points,
-            },
+            desc,
             needs,
             options: setting.options,
         })
@@ -147,11 +153,14 @@ impl Plan {
 
 /// Refuses what method gregory does not have.
 fn check_gregory(cage: &Cage, plan: &Plan) -> Result<()> {
+    if plan.desc.method != SurfaceMethod::Gregory && cage.is_displaced() {
+        bail!("Gregory patches as end caps are not displaced: expected no displacement map");
+    }
     if cage.meshes().iter().any(|mesh| !mesh.edits.is_empty()) {
-        bail!("method gregory has one patch a face of the cage: expected no hierarchical edits");
+        bail!("Gregory patches are those of the cage's own levels: expected no hierarchical edits");
     }
     if plan.desc.crease_patches == CreasePatches::Single {
-        bail!("method gregory has no closed form of semi-sharp creases: expected --crease-patches infinite or none");
+        bail!("Gregory patches have no closed form of semi-sharp creases: expected --crease-patches infinite or none");
     }
     Ok(())
 }
@@ -168,6 +177,7 @@ pub fn frame_needs(spacing: Spacing, density: f32, objects: &[ObjectDesc]) -> Fr
         displaced: false,
         tex_coords: false,
         gregory: false,
+        filling: true,
         gregory_points: GregoryPoints::TwoStage,
         exact_normals: false,
         colors: false,
@@ -234,7 +244,7 @@ impl Session {
         if plan.desc.method == SurfaceMethod::Uniform && cage.is_displaced() {
             bail!("{}: method uniform draws the limit surface: expected no displacement map", named());
         }
-        if plan.desc.method == SurfaceMethod::Gregory {
+        if plan.desc.has_gregory_patches() {
             check_gregory(cage, plan).with_context(named)?;
         }
         let made = preprocess(&cage.meshes(), &plan.desc).with_context(named)?;

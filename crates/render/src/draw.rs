@@ -62,6 +62,7 @@ impl DrawPasses {
         check_targets(device, layers)?;
         let fill = PipelineOptions {
             method: surface.method,
+            end_cap: surface.end_cap,
             spacing: needs.spacing,
             output: Output::Image(layers),
             view: options.view,

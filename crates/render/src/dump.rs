@@ -65,6 +65,7 @@ impl DumpPasses {
         }
         let options = PipelineOptions {
             method: surface.method,
+            end_cap: surface.end_cap,
             spacing: needs.spacing,
             output: Output::Dump,
             view: View::Shaded,
@@ -144,7 +145,7 @@ impl DumpPasses {
 
 /// How many triangles a dump of what the frame that was submitted last listed has; waits for the device.
 pub fn listed_triangle_count(device: &Device, surface: &Surface) -> Result<u64, Error> {
-    let kinds = PatchKind::of_method(surface.desc.method);
+    let kinds = PatchKind::of_method(surface.desc.method, surface.desc.end_cap);
     kinds.iter().map(|&kind| Ok(triangles_of(device, surface, kind)?.1.iter().sum::<u64>())).sum()
 }
 

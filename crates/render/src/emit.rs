@@ -28,7 +28,7 @@ const BATCH_VERTICES: u32 = 512;
 /// The stage's programs.
 pub(crate) struct Emit {
     patches: ComputePipeline,
-    leaves: ComputePipeline,
+    leaves: Vec<ComputePipeline>,
     cut: Option<ComputePipeline>,
     cut_gregory: Option<ComputePipeline>,
     finish: ComputePipeline,
@@ -45,6 +45,9 @@ impl Emit {
             SpecConstant { id: shaders::emit_patches_comp::SPEC_CULL, bits: u32::from(needs.culls) },
         ];
         let pipeline = |module| specialized_compute_pipeline(device, module, CHUNK, &spec);
+        // Filling quads are told from Gregory patches where there are both.
+        let gregory = SpecConstant { id: shaders::emit_leaves_comp::SPEC_GREGORY, bits: u32::from(needs.gregory) };
+        let leaf_spec: Vec<SpecConstant> = spec.into_iter().chain([gregory]).collect();
         let stencils = u32::from(needs.gregory_points == GregoryPoints::Stencil);
         let stencils = SpecConstant { id: shaders::emit_gregory_comp::SPEC_STENCIL, bits: stencils };
         let gregory_spec: Vec<SpecConstant> = spec.into_iter().chain([stencils]).collect();
@@ -52,7 +55,15 @@ impl Emit {
             || specialized_compute_pipeline(device, &shaders::emit_gregory_comp::PROGRAM, CHUNK, &gregory_spec);
         Ok(Self {
             patches: pipeline(&shaders::emit_patches_comp::PROGRAM)?,
-            leaves: if needs.gregory { gregory()? } else { pipeline(&shaders::emit_leaves_comp::PROGRAM)? },
+            leaves: [
+                (needs.filling || !needs.gregory).then(|| {
+                    specialized_compute_pipeline(device, &shaders::emit_leaves_comp::PROGRAM, CHUNK, &leaf_spec)
+                }),
+                needs.gregory.then(gregory),
+            ]
+            .into_iter()
+            .flatten()
+            .collect::<Result<_, _>>()?,
             cut: if needs.cuts { Some(pipeline(&shaders::emit_cut_comp::PROGRAM)?) } else { None },
             cut_gregory: if needs.cuts && needs.gregory {
                 Some(pipeline(&shaders::emit_gregory_cut_comp::PROGRAM)?)
@@ -70,7 +81,9 @@ impl Emit {
         let push = |list: usize| EmitPush { scene, list: list as u32, ..EmitPush::default() };
         encoder.compute_indirect(&self.patches, &push(LIST_BASE), heads, head_offset(LIST_BASE));
         encoder.compute_indirect_more(&self.patches, &push(LIST_PATCHES), heads, head_offset(LIST_PATCHES));
-        encoder.compute_indirect_more(&self.leaves, &push(LIST_LEAVES), heads, head_offset(LIST_LEAVES));
+        for leaves in &self.leaves {
+            encoder.compute_indirect_more(leaves, &push(LIST_LEAVES), heads, head_offset(LIST_LEAVES));
+        }
         if let Some(cut) = &self.cut {
             encoder.compute_indirect(cut, &push(LIST_CUT), heads, head_offset(LIST_CUT));
         }

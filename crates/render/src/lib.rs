@@ -40,6 +40,8 @@ pub use error::Error;
 pub use frame::FrameStages;
 pub use lists::{PatchKind, Status};
 pub use objects::ObjectDesc;
-pub use options::{Culling, Density, FrameNeeds, FrameOptions, GregoryPoints, Selection, Spacing, SurfaceMethod, View};
+pub use options::{
+    Culling, Density, EndCap, FrameNeeds, FrameOptions, GregoryPoints, Selection, Spacing, SurfaceMethod, View,
+};
 pub use surface::{MemoryBytes, PreprocessTimes, Preprocessed, Surface, SurfaceDesc, preprocess};
 pub use targets::{Layers, NO_SURFACE, Targets};

@@ -9,7 +9,7 @@ use planish_subdiv::selection::PatchCounts;
 use planish_subdiv::tables::{MeshRanges, Tables};
 
 use crate::objects::ObjectDesc;
-use crate::options::SurfaceMethod;
+use crate::options::{EndCap, SurfaceMethod};
 
 /// The kinds of patches, in the order of their lists and draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,9 +53,10 @@ impl PatchKind {
         matches!(self, Self::Cut | Self::GregoryCut | Self::TriangleCut)
     }
 
-    /// The kinds that a method draws.
-    pub fn of_method(method: SurfaceMethod) -> &'static [Self] {
+    /// The kinds that a method draws, with these end caps.
+    pub fn of_method(method: SurfaceMethod, end_cap: EndCap) -> &'static [Self] {
         match method {
+            SurfaceMethod::Dfas | SurfaceMethod::Fas if end_cap == EndCap::Gregory => &Self::ALL,
             SurfaceMethod::Dfas | SurfaceMethod::Fas => &Self::ALL[..=Self::Cut as usize],
             SurfaceMethod::Gregory => {
                 &[Self::Regular, Self::Cut, Self::Gregory, Self::GregoryCut, Self::Triangle, Self::TriangleCut]
@@ -145,8 +146,7 @@ impl Capacities {
         let patches = worst(&|mesh| all(&mesh.patches));
         let leaves = worst(&|mesh| all(&mesh.irregular));
         let gregory = worst(&|mesh| if mesh.spokes.is_empty() { 0 } else { all(&mesh.irregular) });
-        let filling = if gregory == 0 { leaves } else { 0 };
-        let entries = [patches, patches, filling, 0, gregory, 0, gregory, 0];
+        let entries = [patches, patches, leaves, 0, gregory, 0, gregory, 0];
         Self {
             chunks: chunk_counts.map(|of| sum(of) as u32),
             active: std::array::from_fn(|level| {

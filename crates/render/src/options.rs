@@ -26,6 +26,16 @@ pub enum GregoryPoints {
     Stencil,
 }
 
+/// What irregular faces are drawn as where the largest level ends refinement (FAS section 7).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EndCap {
+    /// Patch-filling quads: flat, and their edges have one segment.
+    #[default]
+    Quad,
+    /// Gregory patches: approximations, as fine as other patches.
+    Gregory,
+}
+
 /// Where tessellated points lie between whole factors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Spacing {
@@ -104,8 +114,10 @@ pub struct FrameNeeds {
     pub displaced: bool,
     /// Dumps have texture coordinates.
     pub tex_coords: bool,
-    /// Irregular faces are Gregory patches ([`SurfaceMethod::Gregory`]).
+    /// Irregular faces, where refinement ends, are Gregory patches ([`SurfaceMethod::Gregory`], [`EndCap::Gregory`]).
     pub gregory: bool,
+    /// Other leaves are patch-filling quads all the same.
+    pub filling: bool,
     /// How their control points are made: as the surface's are ([`crate::SurfaceDesc::gregory_points`]).
     pub gregory_points: GregoryPoints,
     /// Their normals are those of the rational patches, not of their Bezier form.
@@ -126,6 +138,7 @@ impl FrameNeeds {
             displaced: false,
             tex_coords: false,
             gregory: false,
+            filling: true,
             gregory_points: GregoryPoints::TwoStage,
             exact_normals: false,
             colors: false,

@@ -8,7 +8,7 @@ use planish_shaders::{DrawPush, ShaderModule};
 
 use crate::error::Error;
 use crate::lists::PatchKind;
-use crate::options::{Spacing, SurfaceMethod, View};
+use crate::options::{EndCap, Spacing, SurfaceMethod, View};
 use crate::program::stage;
 use crate::targets::{DEPTH_FORMAT, Layers};
 
@@ -25,6 +25,7 @@ pub(crate) enum Output {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PipelineOptions {
     pub method: SurfaceMethod,
+    pub end_cap: EndCap,
     pub spacing: Spacing,
     pub output: Output,
     pub view: View,
@@ -55,7 +56,8 @@ pub(crate) fn pipelines(
     device: &Device,
     options: &PipelineOptions,
 ) -> Result<Vec<(PatchKind, GraphicsPipeline)>, Error> {
-    let kinds = PatchKind::of_method(options.method).iter().filter(|kind| options.cuts || !kind.is_cut());
+    let kinds =
+        PatchKind::of_method(options.method, options.end_cap).iter().filter(|kind| options.cuts || !kind.is_cut());
     kinds.map(|&kind| Ok((kind, pipeline(device, options, kind)?))).collect()
 }
 

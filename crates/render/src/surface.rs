@@ -20,7 +20,7 @@ use crate::error::Error;
 use crate::lists::{Capacities, Phases, Status};
 use crate::marks::Marks;
 use crate::objects::{CageFacts, MeshFacts, ObjectDesc};
-use crate::options::{FrameOptions, GregoryPoints, SurfaceMethod};
+use crate::options::{EndCap, FrameOptions, GregoryPoints, SurfaceMethod};
 use crate::upload::address;
 
 /// What to make of cages.
@@ -32,6 +32,8 @@ pub struct SurfaceDesc {
     pub level: u32,
     /// Which creases are patches of their own.
     pub crease_patches: CreasePatches,
+    /// What irregular faces of the deepest level are drawn as.
+    pub end_cap: EndCap,
     /// Meshes may be displaced ([`Surface::displace`]).
     pub displaced: bool,
     /// How the control points of Gregory patches are made.
@@ -39,6 +41,12 @@ pub struct SurfaceDesc {
 }
 
 impl SurfaceDesc {
+    /// Whether some irregular faces are Gregory patches.
+    pub fn has_gregory_patches(&self) -> bool {
+        let is_capped = self.end_cap == EndCap::Gregory && self.method != SurfaceMethod::Uniform;
+        self.method == SurfaceMethod::Gregory || is_capped
+    }
+
     /// Whether regular patches may have a semi-sharp crease.
     pub(crate) fn has_creased_patches(&self) -> bool {
         self.method != SurfaceMethod::Uniform && self.crease_patches == CreasePatches::Single
@@ -85,7 +93,7 @@ pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preproc
         uniform: desc.method == SurfaceMethod::Uniform,
         crease_patches: desc.crease_patches,
         displaced: desc.displaced,
-        gregory: desc.method == SurfaceMethod::Gregory,
+        gregory: desc.has_gregory_patches(),
         gregory_stencils: desc.method == SurfaceMethod::Gregory && desc.gregory_points == GregoryPoints::Stencil,
         ignores_channels: !desc.displaced,
     };

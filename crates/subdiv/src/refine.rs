@@ -44,7 +44,7 @@ pub struct RefineOptions {
     /// The surface will be displaced: also where normals or texture coordinates differ on both sides of an edge, one of
     /// them is known to decide for both.
     pub displaced: bool,
-    /// Irregular faces are drawn as Gregory patches: `max_level` is 0.
+    /// Irregular faces of `max_level`, where refinement ends, are drawn as Gregory patches.
     pub gregory: bool,
     /// Their control points have stencils over the cage's points ([`crate::tables::GregoryStencils`]).
     pub gregory_stencils: bool,

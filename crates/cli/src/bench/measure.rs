@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use planish_gpu::{Device, SubmitReport};
-use planish_render::{Density, FrameNeeds, GregoryPoints, Layers, SurfaceDesc, SurfaceMethod, View};
+use planish_render::{Density, EndCap, FrameNeeds, GregoryPoints, Layers, SurfaceDesc, SurfaceMethod, View};
 use planish_subdiv::refine::CreasePatches;
 use serde::Serialize;
 
@@ -79,7 +79,14 @@ pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) ->
         },
         objects,
         camera,
-        desc: SurfaceDesc { method, level, crease_patches, displaced: cage.is_displaced(), gregory_points },
+        desc: SurfaceDesc {
+            method,
+            level,
+            crease_patches,
+            end_cap: EndCap::Quad,
+            displaced: cage.is_displaced(),
+            gregory_points,
+        },
         options: frame_options(method, Density::Tess(tess_factor), false),
     };
     plan.cull(arguments.no_cull);

@@ -3,7 +3,7 @@
 
 use anyhow::{Result, bail};
 use planish_gpu::Device;
-use planish_render::{Density, GregoryPoints, Layers, SurfaceMethod, View};
+use planish_render::{Density, EndCap, GregoryPoints, Layers, SurfaceMethod, View};
 use planish_scene::Camera;
 use planish_subdiv::refine::CreasePatches;
 use serde::Serialize;
@@ -105,6 +105,7 @@ impl Method {
             method,
             max_level: arguments.max_level,
             crease_patches: CreasePatches::default(),
+            end_cap: EndCap::default(),
             spacing: arguments.spacing.into(),
             size: arguments.size,
             watertight: !arguments.no_watertight,

@@ -382,7 +382,8 @@ fn check_all(mut bench: Bench) {
     if is_wanted("") {
         // Closed meshes of regular faces alone are few, and none of them is cut.
         let is_rare = |kind: PatchKind| bench.is_gregory() && kind == PatchKind::Cut;
-        for &kind in PatchKind::of_method(bench.desc.method).iter().filter(|&&kind| !is_rare(kind)) {
+        for &kind in PatchKind::of_method(bench.desc.method, bench.desc.end_cap).iter().filter(|&&kind| !is_rare(kind))
+        {
             assert!(bench.entries[kind as usize] > 50, "{kind:?}: {:?}", bench.entries);
         }
     }

@@ -244,6 +244,10 @@ impl<'a> GregoryBuilder<'a> {
 
     /// The corner (half-edge) of the face of level 0, of other than four sides, that a face of level 1 is the part of.
     fn parent_of_part(&self, k: u32, face: u32) -> Option<(&'a Level, u32)> {
+        // With a level of refinement or more, the neighbours are split too, and these are quads as others are.
+        if self.refinement.options.max_level > 0 {
+            return None;
+        }
         let split = &self.refinement.splits.get(k.checked_sub(1)? as usize)?;
         let parent = &self.refinement.levels[k as usize - 1];
         let corner = split.child_corners[face as usize];

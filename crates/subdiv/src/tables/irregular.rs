@@ -104,8 +104,7 @@ impl<'a> LevelFaces<'a> {
         let irregular = &refinement.irregular_faces[k as usize];
         let is_irregular = refinement.flags(k, irregular);
         let is_forced = refinement.flags(k, &refinement.forced_faces[k as usize]);
-        // Gregory patches have tess factors of their own: no edge is left with one segment.
-        let ends_here = k >= refinement.options.max_level && !refinement.options.gregory;
+        let ends_here = k >= refinement.options.max_level;
         let is_end = is_irregular.iter().zip(&is_forced).map(|(&irregular, &forced)| ends_here && irregular && !forced);
         let first_patch = tables.patch_ranges.last().map_or(0, |range| range.end);
         let first_irregular = tables.irregular_ranges.last().map_or(0, |range| range.end);
@@ -187,6 +186,8 @@ impl<'a> LevelFaces<'a> {
             let own = level.half_edges(face).zip(0..);
             let leaf = own.fold(0, |mask, (edge, i)| mask | u8::from(self.is_across(edge, &self.is_end)) << i);
             let leaf = leaf | above.map_or(0, |(above, corners)| above.ends_beside_child(corners[face as usize]));
+            // Gregory patches have tess factors of their own: no edge is left with one segment.
+            let leaf = if refinement.options.gregory { 0 } else { leaf };
             let info = PatchInfo {
                 location: level.locations[face as usize],
                 level: self.k as u8,
@@ -248,7 +249,7 @@ impl<'a> LevelFaces<'a> {
             let sides = self.level.sides(face);
             if sides != 4 {
                 gregory.push_nothing(sides);
-            } else if self.is_forced[face as usize] || !self.level.is_drawn(face) {
+            } else if !self.is_end[face as usize] || !self.level.is_drawn(face) {
                 gregory.push_nothing(1);
             } else {
                 gregory.push_quad(self.k, face, &places, limits);
