@@ -97,13 +97,13 @@ fn end_caps_come_nearer_to_the_limit_surface_with_every_level() {
     for name in ["adjacent_extraordinary", "genus_2", "ngon_5"] {
         let mesh = scene(name);
         let error = |level: u32| {
-            let flags = format!("--method fas --end-cap gregory --max-level {level} --tess 12");
+            let flags = format!("--method fas --end-cap gregory --max-level {level} --tess 16 --spacing equal");
             Planish::dump(&mesh, &path).flags(&flags).run().silent_success().unwrap();
             Report::of(&mesh, &path).unwrap().number("rms_pos_err")
         };
         let errors = [1, 2, 3].map(error);
         assert!(errors[0] < 1e-3 && errors[2] > 0.0, "{name}: {errors:?}");
-        assert!(errors[1] < 0.4 * errors[0] && errors[2] < 0.4 * errors[1], "{name}: {errors:?}");
+        assert!(errors[1] < 0.45 * errors[0] && errors[2] < 0.45 * errors[1], "{name}: {errors:?}");
     }
 }
 

@@ -64,7 +64,6 @@ fn requests_that_cannot_be_met_are_refused_with_one_line() {
     let folder = temporary();
     let out = folder.path().join("out.exr");
     let cases = [
-        ("--method gregory", "gregory"),
         ("--method table", "table"),
         ("--scheme loop", "loop"),
         ("--scheme bilinear", "bilinear"),

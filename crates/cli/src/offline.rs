@@ -109,13 +109,15 @@ impl Plan {
         }
         let is_gregory = setting.method == SurfaceMethod::Gregory;
         let level = if is_gregory { 0 } else { isolation_level(density, setting.max_level) };
+        // Stencils are over the cage: end caps lie deeper.
+        let gregory_points = if is_gregory { setting.gregory_points } else { GregoryPoints::TwoStage };
         let desc = SurfaceDesc {
             method: setting.method,
             level,
             crease_patches: setting.crease_patches,
             end_cap: setting.end_cap,
             displaced: cage.is_displaced(),
-            gregory_points: setting.gregory_points,
+            gregory_points,
         };
         let needs = FrameNeeds {
             watertight: setting.watertight,
@@ -123,7 +125,7 @@ impl Plan {
             tex_coords: cage.has_uv(),
             gregory: desc.has_gregory_patches(),
             filling: !is_gregory,
-            gregory_points: setting.gregory_points,
+            gregory_points,
             exact_normals: setting.exact_normals,
             colors: cage.has_colors(),
             ..frame_needs(setting.spacing, density, &objects)
