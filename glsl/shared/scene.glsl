@@ -199,6 +199,7 @@ struct SceneData {
     Indices tex_roots;        // the branch of each Ptex face
     Points point_colors;      // of the points of all levels; the three tables are empty where nothing needs them
     Points limit_colors;      // of the limit points
+    Points gregory_colors;    // of the control points of Gregory patches, 20 a face
     Points slot_colors;       // of the slots of meshes: vertices, and faces of other than four sides
     LimitSeats limit_seats;
     LimitTangentTable limit_tangents;

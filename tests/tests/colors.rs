@@ -140,6 +140,34 @@ fn colours_that_are_affine_in_the_position_are_so_on_the_surface() {
     });
 }
 
+#[test]
+fn colours_of_gregory_patches_are_made_as_their_points_are() {
+    // Where nothing is semi-sharp: edge points there are projected, colours are not.
+    let names = [
+        "adjacent_extraordinary",
+        "boundary_valences",
+        "crease_infinite_extraordinary",
+        "mixed_triangles_quads",
+        "ngon_40",
+    ];
+    let ways = [
+        "--tess 5.3 --method gregory",
+        "--tess 4 --method gregory --gregory stencil",
+        "--tess 9 --max-level 1 --end-cap gregory",
+    ];
+    let cases: Vec<_> = names.into_iter().zip(ways.into_iter().cycle()).collect();
+    check_all(&cases, |(name, way)| {
+        let folder = temporary();
+        let path = write_colored(&scene(name), folder.path(), "", affine);
+        let vertices = dumped(&path, way)?;
+        if !vertices.iter().any(|vertex| vertex.kind >= 3) {
+            return Err(format!("{name} {way}: no Gregory patches"));
+        }
+        compare(&vertices, &control_mesh(&path), |vertex| Some(affine(vertex.position.map(f64::from))))
+            .map_err(|fault| format!("{name} {way}: {fault}"))
+    });
+}
+
 /// The mesh whose positions are the colours. Edits that move points move none of them, but refine as they do.
 fn as_positions(mesh: &ControlMesh) -> ControlMesh {
     let mut result = ControlMesh { positions: colors_of(mesh).to_vec(), ..mesh.clone() };

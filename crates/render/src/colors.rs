@@ -3,6 +3,7 @@
 
 use planish_gpu::{Buffer, Device};
 use planish_subdiv::ControlMesh;
+use planish_subdiv::gregory::GregorySurface;
 use planish_subdiv::mesh::VertexInterpolation;
 use planish_subdiv::tables::{MeshRanges, Tables};
 
@@ -21,6 +22,8 @@ struct ColorTables {
     points: Vec<[f32; 3]>,
     /// Of the limit points; empty likewise.
     limits: Vec<[f32; 3]>,
+    /// Of the control points of Gregory patches, [`GREGORY_POINTS`] a face; empty likewise, and where there are none.
+    gregory: Vec<[f32; 3]>,
     /// Of all meshes' density slots, which are vertices and n-gons; empty where no mesh has colours that are bilinear.
     slots: Vec<[f32; 3]>,
 }
@@ -32,12 +35,27 @@ impl ColorTables {
         if has(meshes, VertexInterpolation::Vertex) {
             result.points = subdivide_values(tables, &cage_colors);
             result.limits = limit(tables, &result.points).iter().map(|limit| limit.position).collect();
+            result.gregory = gregory_values(tables, &cage_colors);
         }
         if has(meshes, VertexInterpolation::Varying) {
             result.slots = slot_values(ranges, tables, &cage_colors);
         }
         result
     }
+}
+
+/// Control points of a Gregory patch in the table; triangles have fewer.
+const GREGORY_POINTS: usize = 20;
+
+/// The colours of the control points of all Gregory patches, made as the points themselves are.
+fn gregory_values(tables: &Tables, cage_values: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    let mut values = vec![WHITE; GREGORY_POINTS * tables.gregory.faces.len()];
+    let surface = GregorySurface::of_values(tables, cage_values);
+    for (face, values) in (0..).zip(values.chunks_exact_mut(GREGORY_POINTS)) {
+        let points = surface.patch(face).map_or_else(Vec::new, |patch| patch.points);
+        values.iter_mut().zip(points).for_each(|(value, point)| *value = point.map(|c| c as f32));
+    }
+    values
 }
 
 /// Whether any mesh has such colours.
@@ -80,6 +98,7 @@ fn mean(vertices: &[u32], values: &[[f32; 3]]) -> [f32; 3] {
 pub(crate) struct ColorBuffers {
     pub points: Buffer,
     pub limits: Buffer,
+    pub gregory: Buffer,
     pub slots: Buffer,
 }
 
@@ -103,12 +122,13 @@ impl ColorBuffers {
         Ok(Self {
             points: table(device, "colours of points", &tables.points)?,
             limits: table(device, "colours of limit points", &tables.limits)?,
+            gregory: table(device, "colours of Gregory patches", &tables.gregory)?,
             slots: table(device, "colours of slots", &tables.slots)?,
         })
     }
 
-    pub fn all(&self) -> [&Buffer; 3] {
-        [&self.points, &self.limits, &self.slots]
+    pub fn all(&self) -> [&Buffer; 4] {
+        [&self.points, &self.limits, &self.gregory, &self.slots]
     }
 }
 

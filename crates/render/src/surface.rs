@@ -335,6 +335,7 @@ impl Surface {
             tex_roots: address(&self.tex_coords.roots),
             point_colors: address(&self.colors.points),
             limit_colors: address(&self.colors.limits),
+            gregory_colors: address(&self.colors.gregory),
             slot_colors: address(&self.colors.slots),
             limit_seats: address(&tables.limit_seats),
             limit_tangents: address(&frame.limit_tangents),

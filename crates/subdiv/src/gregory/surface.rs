@@ -33,6 +33,18 @@ impl<'a> GregorySurface<'a> {
     /// # Panics
     /// If there are fewer positions than cage points.
     pub fn new(tables: &'a Tables, cage: &[[f32; 3]]) -> Self {
+        Self::with_projection(tables, cage, true)
+    }
+
+    /// For values that are no positions, such as colours: nothing is projected into tangent planes.
+    ///
+    /// # Panics
+    /// As [`Self::new`].
+    pub fn of_values(tables: &'a Tables, cage: &[[f32; 3]]) -> Self {
+        Self::with_projection(tables, cage, false)
+    }
+
+    fn with_projection(tables: &'a Tables, cage: &[[f32; 3]], is_projected: bool) -> Self {
         let mut points: Vec<Vec3> = cage[..tables.cage_point_count as usize].iter().map(|p| p.map(f64::from)).collect();
         points.resize(tables.point_count() as usize, [0.0; 3]);
         let stencils = &tables.stencils;
@@ -49,7 +61,7 @@ impl<'a> GregorySurface<'a> {
             [sum([(1.0, points[tables.limits.indices[row.first_index as usize] as usize]), (1.0, p)]), a, b]
         };
         let limits: Vec<[Vec3; 3]> = tables.limits.rows.iter().map(of_limit).collect();
-        let spokes = spokes(tables, &points, &limits);
+        let spokes = spokes(tables, &points, &limits, is_projected);
         Self { tables, limits, spokes }
     }
 
@@ -144,7 +156,7 @@ impl GregoryPatch {
     }
 }
 
-fn spokes(tables: &Tables, points: &[Vec3], limits: &[[Vec3; 3]]) -> Vec<SpokePoints> {
+fn spokes(tables: &Tables, points: &[Vec3], limits: &[[Vec3; 3]], is_projected: bool) -> Vec<SpokePoints> {
     let table = &tables.gregory;
     let mut spokes = vec![SpokePoints::default(); table.spokes.len()];
     for (&[first, count], [p, a, b]) in table.of_limit.iter().zip(limits) {
@@ -153,7 +165,8 @@ fn spokes(tables: &Tables, points: &[Vec3], limits: &[[Vec3; 3]]) -> Vec<SpokePo
             let spoke = &table.spokes[i];
             let [along, across] = spoke.along.map(f64::from);
             let mut to_end = sum([(1.0, points[spoke.end as usize]), (-1.0, *p)]);
-            let normal = SurfacePoint { position: *p, du: *a, dv: *b }.normal().filter(|_| spoke.is_projected);
+            let normal =
+                SurfacePoint { position: *p, du: *a, dv: *b }.normal().filter(|_| is_projected && spoke.is_projected);
             if let Some(n) = normal {
                 to_end = sum([(1.0, to_end), (-(n[0] * to_end[0] + n[1] * to_end[1] + n[2] * to_end[2]), n)]);
             }
