@@ -316,7 +316,8 @@ mod tests {
             "wall_ms",
         ]);
         assert_eq!(keys(frame), expected);
-        assert_eq!(keys(&frame["patches"]), ["quad", "regular", "transition", "truncated"]);
+        let kinds = ["gregory_quad", "gregory_triangle", "quad", "regular", "transition", "truncated"];
+        assert_eq!(keys(&frame["patches"]), kinds);
         assert_eq!(keys(&frame["gpu_ms"]), ["density", "draw", "emit", "limit", "select", "subdivide", "total"]);
         assert_eq!(frame["triangles"], json!(0));
     }
