@@ -4,8 +4,11 @@ use std::collections::HashMap;
 
 use planish_render::limit::limit_with_tangents;
 use planish_render::spokes::spokes;
-use planish_render::{Culling, Density, FrameNeeds, FrameOptions, Selection, Spacing, SurfaceDesc, SurfaceMethod};
+use planish_render::{
+    Culling, Density, EndCap, FrameNeeds, FrameOptions, GregoryPoints, Selection, Spacing, SurfaceDesc, SurfaceMethod,
+};
 use planish_subdiv::gregory::{GregorySurface, Normals};
+use planish_subdiv::refine::CreasePatches;
 
 use crate::lab::Lab;
 use crate::world::{World, scene};
@@ -27,10 +30,18 @@ const SCENES: [&str; 12] = [
     "several.json",
 ];
 
+const DESC: SurfaceDesc = SurfaceDesc {
+    method: SurfaceMethod::Gregory,
+    level: 0,
+    crease_patches: CreasePatches::Infinite,
+    end_cap: EndCap::Quad,
+    displaced: false,
+    gregory_points: GregoryPoints::TwoStage,
+};
+
 fn world(lab: &Lab, name: &str) -> World {
     let (meshes, objects) = scene(name, false);
-    let desc = SurfaceDesc { method: SurfaceMethod::Gregory, ..SurfaceDesc::default() };
-    World::with_desc(&lab.device, name, meshes, objects, desc, None)
+    World::with_desc(&lab.device, name, meshes, objects, DESC, None)
 }
 
 fn frame(lab: &Lab, world: &mut World, spacing: Spacing) {
@@ -72,10 +83,10 @@ fn spokes_are_those_of_their_twin() {
 fn what_is_drawn_is_the_patch() {
     for (exact_normals, normals) in [(false, Normals::Approximate), (true, Normals::Exact)] {
         let lab = Lab::with_needs(|spacing| FrameNeeds { gregory: true, exact_normals, ..FrameNeeds::all(spacing) });
+        let passes = lab.dump_passes(&DESC, Spacing::FractionalEven);
         for name in SCENES.into_iter().filter(|name| !name.contains('.')) {
             let mut world = world(&lab, name);
             frame(&lab, &mut world, Spacing::FractionalEven);
-            let passes = lab.dump_passes(world.surface.desc(), Spacing::FractionalEven);
             let vertices = lab.dump(&world.surface, &passes);
             let tables = world.surface.tables();
             let surface = GregorySurface::new(tables, &world.meshes[0].positions);

@@ -1,6 +1,6 @@
 //! Closed surfaces are closed: whatever is seen of them from wherever, all triangles meet edge to edge, to the bit.
 //!
-//! Each mesh is captured from as many random eyes as `PLANISH_SEAM_CAMERAS` says (2), with every selection and spacing; of the
+//! Each mesh is captured from as many random eyes as `PLANISH_SEAM_CAMERAS` says (1), with every selection and spacing; of the
 //! meshes those whose names have one of the parts in `PLANISH_SEAM_SCENES`, between commas (all).
 
 use std::cell::OnceCell;
@@ -175,7 +175,7 @@ fn is_wanted(name: &str) -> bool {
 
 /// How many random eyes look at each mesh, with each selection and spacing.
 fn camera_count() -> usize {
-    env::var("PLANISH_SEAM_CAMERAS").map_or(2, |count| count.parse().expect("a number of cameras"))
+    env::var("PLANISH_SEAM_CAMERAS").map_or(1, |count| count.parse().expect("a number of cameras"))
 }
 
 /// From outside, from inside, and along the surface from close by.
@@ -384,7 +384,7 @@ fn check_all(mut bench: Bench) {
         let is_rare = |kind: PatchKind| bench.is_gregory() && kind == PatchKind::Cut;
         for &kind in PatchKind::of_method(bench.desc.method, bench.desc.end_cap).iter().filter(|&&kind| !is_rare(kind))
         {
-            assert!(bench.entries[kind as usize] > 50, "{kind:?}: {:?}", bench.entries);
+            assert!(bench.entries[kind as usize] > 20, "{kind:?}: {:?}", bench.entries);
         }
     }
 }
