@@ -40,9 +40,9 @@ fn corners_of_quads_are_on_the_limit_surface_with_its_normals() {
     let mut rules = 0;
     meshes.retain(|mesh| {
         rules += usize::from(is_about_rules(mesh));
-        !is_about_rules(mesh) || rules % 4 == 0
+        !is_about_rules(mesh) || rules % 8 == 0
     });
-    assert!(meshes.len() > 35, "{} meshes of quads", meshes.len());
+    assert!(meshes.len() > 25, "{} meshes of quads", meshes.len());
     check_all(&meshes, |mesh| check(mesh, "--method gregory --tess 1 --spacing equal"));
 }
 
@@ -86,7 +86,7 @@ fn end_caps_are_closed_and_cover_every_face() {
     ];
     let mut meshes = meshes();
     meshes.retain(|mesh| !stem(mesh).starts_with("uv_") && !stem(mesh).starts_with("color_"));
-    let cases: Vec<_> = meshes.into_iter().zip(flags.into_iter().cycle()).step_by(2).collect();
+    let cases: Vec<_> = meshes.into_iter().zip(flags.into_iter().cycle()).step_by(4).collect();
     check_all(&cases, |(mesh, flags)| check_approximation(mesh, &format!("--end-cap gregory {flags}")).map(|_| ()));
 }
 

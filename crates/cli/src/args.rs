@@ -14,7 +14,7 @@ use crate::aov::AovList;
 use crate::frames::FrameRange;
 use crate::names::{
     CreasePatchesName, DisplacementKindName, DisplacementLayoutName, EndCapName, GregoryNormalsName, GregoryPointsName,
-    LodName, MethodName, SchemeName, SpacingName, ViewName, name_of,
+    LodName, MethodName, MetricName, SchemeName, SpacingName, ViewName, name_of,
 };
 use crate::values::{self, FrameRate, MAX_LEVEL};
 
@@ -22,6 +22,8 @@ use crate::values::{self, FrameRate, MAX_LEVEL};
 const DEFAULT_MAX_LEVEL: u32 = 10;
 /// Most samples a pixel.
 const MAX_SAMPLES: u64 = 1 << 16;
+/// Most samples of a dump.
+const MAX_COMPARED_SAMPLES: u64 = 100_000_000;
 /// Most timed frames.
 const MAX_REPEAT: u64 = 1_000_000;
 
@@ -44,6 +46,8 @@ pub enum Command {
     Render(RenderArguments),
     /// Write the tessellated limit surface, as the tessellation stages produce it, to PLY
     Dump(DumpArguments),
+    /// Measure how far one dump lies from another
+    Compare(CompareArguments),
     /// Describe a scene: mesh, features, patches by level and type, memory; needs no device
     Info(InfoArguments),
     /// Time the surface methods side by side
@@ -110,6 +114,41 @@ pub struct DumpArguments {
     pub frames: FrameArguments,
     #[command(flatten)]
     pub device: DeviceArguments,
+}
+
+/// `planish compare`
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    /// Dump to judge, .ply
+    #[arg(value_name = "A")]
+    pub a: PathBuf,
+    /// Dump that it is compared with, .ply; taken as triangles, so better denser than A
+    #[arg(value_name = "B")]
+    pub b: PathBuf,
+    /// Points on each surface, spread evenly by area, whose nearest points on the other are looked for; 0 for none
+    #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = RangedU64ValueParser::<u32>::new().range(0..=MAX_COMPARED_SAMPLES))]
+    pub samples: u32,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Draw A coloured by distance, blue for none to red, .png or .exr
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// Draw A coloured by the angle between normals, .png or .exr
+    #[arg(long, value_name = "OUT")]
+    pub normal_view: Option<PathBuf>,
+    /// What the pictures show
+    #[arg(long, value_enum, default_value_t = MetricName::Parametric)]
+    pub metric: MetricName,
+    /// Distance that is drawn red [default: the greatest]
+    #[arg(long, value_name = "MAX", value_parser = values::positive, allow_negative_numbers = true)]
+    pub scale: Option<f64>,
+    /// Angle that is drawn red [default: the greatest]
+    #[arg(long, value_name = "DEG", value_parser = values::positive, allow_negative_numbers = true)]
+    pub normal_scale: Option<f64>,
+    /// Size of the pictures in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]
+    pub size: [u32; 2],
 }
 
 /// `planish info`

@@ -10,12 +10,13 @@
 //! | `offline` | device, surface and passes: the machinery that the commands share |
 //! | `image` | a frame's images, read back |
 //! | `stats` | the JSON of `--stats` |
-//! | `render`, `dump`, `info`, `bench`, `devices` | the commands |
+//! | `render`, `dump`, `compare`, `info`, `bench`, `devices` | the commands |
 
 mod aov;
 mod args;
 mod bench;
 mod cage;
+mod compare;
 mod console;
 mod culling;
 mod devices;
@@ -61,6 +62,7 @@ fn main() -> ExitCode {
     let done = match &arguments.command {
         Command::Render(arguments) => render::run(arguments, &console),
         Command::Dump(arguments) => dump::run(arguments, &console),
+        Command::Compare(arguments) => compare::run(arguments, &console),
         Command::Info(arguments) => info::run(arguments, &console),
         Command::Bench(arguments) => bench::run(arguments, &console),
         Command::Devices => devices::run(),

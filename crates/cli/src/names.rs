@@ -69,6 +69,15 @@ impl From<GregoryPointsName> for GregoryPoints {
     }
 }
 
+/// Deviations that `compare` shows in pictures, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MetricName {
+    /// From the point with the same (face, u, v)
+    Parametric,
+    /// From the nearest point
+    Nearest,
+}
+
 /// Subdivision schemes by name.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum SchemeName {

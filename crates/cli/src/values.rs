@@ -47,6 +47,11 @@ pub fn finite(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "expected a finite number".to_owned())
 }
 
+/// A number above 0.
+pub fn positive(text: &str) -> Result<f64, String> {
+    finite(text).ok().filter(|number| *number > 0.0).ok_or_else(|| "expected a number above 0".to_owned())
+}
+
 fn number(text: &str, is_good: impl Fn(f32) -> bool, expected: &str) -> Result<f32, String> {
     let good = |number: &f32| number.is_finite() && is_good(*number);
     text.parse().ok().filter(good).ok_or_else(|| format!("expected {expected}"))
@@ -121,6 +126,8 @@ mod tests {
         assert_eq!(edge_pixels("0.5"), Ok(0.5));
         assert_eq!(finite("-0.25"), Ok(-0.25));
         assert!(["nan", "inf", "-inf", "1e999", "x", ""].iter().all(|bad| finite(bad).is_err()));
+        assert_eq!(positive("1e-9"), Ok(1e-9));
+        assert!(["0", "-1", "nan", "inf", "x"].iter().all(|bad| positive(bad).is_err()));
         assert_eq!(field_of_view("179.5"), Ok(179.5));
         assert!(["0.99", "-1", "nan", "inf", "x"].iter().all(|bad| tess_factor(bad).is_err()));
         assert!(["0", "-4", "nan", "inf"].iter().all(|bad| edge_pixels(bad).is_err()));

@@ -1,4 +1,4 @@
-//! Why a file could not be written.
+//! Why a file could not be written or read.
 
 use std::{io, path::PathBuf};
 
@@ -7,7 +7,7 @@ use thiserror::Error;
 /// The result of everything here that can fail.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Why a file could not be written: one line each, naming the file or the layer, and what was expected.
+/// Why a file could not be written or read: one line each, naming the file or the layer, and what was expected.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -116,6 +116,24 @@ pub enum Error {
         expected: u64,
         /// Vertices taken; reading stops at the first one too many.
         found: u64,
+    },
+    /// The system refused to read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file asked for.
+        path: PathBuf,
+        /// What was answered.
+        source: io::Error,
+    },
+    /// A file is not a dump, or not all of one.
+    #[error("cannot read {}: found {found}, expected {expected}", path.display())]
+    NotADump {
+        /// The file asked for.
+        path: PathBuf,
+        /// What is there.
+        found: String,
+        /// What a dump has there.
+        expected: String,
     },
 }
 

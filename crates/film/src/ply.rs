@@ -45,7 +45,7 @@ pub struct DumpProperties {
 /// Bytes of a vertex at most: 8 floats, an int, 2 uchars, 8 floats.
 const VERTEX_BYTES: usize = 8 * 4 + 4 + 2 + 8 * 4;
 /// Bytes of a triangle: a uchar and 3 ints.
-const TRIANGLE_BYTES: usize = 1 + 3 * 4;
+pub(crate) const TRIANGLE_BYTES: usize = 1 + 3 * 4;
 
 impl DumpVertex {
     /// Makes bytes those of the vertex.
@@ -145,11 +145,16 @@ fn header(vertex_count: i32, properties: DumpProperties) -> String {
 /// (0, 1, 2), (3, 4, 5) ..
 fn write_triangles(writer: &mut impl Write, index_count: i32) -> io::Result<()> {
     for first in (0..index_count).step_by(3) {
-        let mut bytes = [3; TRIANGLE_BYTES];
-        for (target, index) in bytes[1..].chunks_exact_mut(4).zip(first..) {
-            target.copy_from_slice(&index.to_le_bytes());
-        }
-        writer.write_all(&bytes)?;
+        writer.write_all(&triangle_bytes(first))?;
     }
     Ok(())
+}
+
+/// A triangle of the vertex `first` and the two after it.
+pub(crate) fn triangle_bytes(first: i32) -> [u8; TRIANGLE_BYTES] {
+    let mut bytes = [3; TRIANGLE_BYTES];
+    for (target, index) in bytes[1..].chunks_exact_mut(4).zip(0..) {
+        target.copy_from_slice(&first.wrapping_add(index).to_le_bytes());
+    }
+    bytes
 }
