@@ -37,12 +37,6 @@ struct Evaluated {
     vec3 along_v;
 };
 
-precise vec3 scaled_sum(vec3 a, vec3 b, float scale)
-{
-    precise vec3 result = a + scale * b;
-    return result;
-}
-
 Evaluated evaluate_quad(Parameter u, Parameter v)
 {
     // f+ of corner i lies along the edge that begins there.
@@ -102,35 +96,58 @@ precise vec3 barycentric(uint part, Parameter u, Parameter v)
     return result;
 }
 
+// What a corner of a triangle adds: to the position, and to its derivatives by the coordinates of the corner, of the next one and of
+// the one before. All thirds add the same, whichever pipeline draws them.
+struct CornerTerms {
+    vec3 position;
+    vec3 by_own;
+    vec3 by_next;
+    vec3 by_previous;
+};
+
+// a, b and c are those coordinates; p, near and far control points along the next edge, plus and minus the face points.
+CornerTerms corner_terms(float a, float b, float c, vec3 p, vec3 near, vec3 far, vec3 plus, vec3 minus)
+{
+    precise vec3 inner = blend(b, plus, c, minus);
+    precise float both = 3.0 * ((a * b) * (a + b));
+    precise float product = 12.0 * ((a * a) * (b * c));
+    precise vec3 position = ((a * a) * a) * p + (both * (a * near + b * far) + product * inner);
+    precise vec3 by_own = (3.0 * (a * a)) * p
+        + (((9.0 * a + 6.0 * b) * (a * b)) * near + ((3.0 * b + 6.0 * a) * (b * b)) * far + (24.0 * ((a * b) * c)) * inner);
+    precise vec3 next = ((3.0 * a + 6.0 * b) * (a * a)) * near + ((9.0 * b + 6.0 * a) * (a * b)) * far + (12.0 * ((a * a) * c)) * inner;
+    precise vec3 previous = (12.0 * ((a * a) * b)) * inner;
+    precise vec3 exact_next = next + product * blend_slope(b, plus, c, minus);
+    precise vec3 exact_previous = previous + product * blend_slope(c, minus, b, plus);
+    return CornerTerms(position, by_own, EXACT_NORMALS ? exact_next : next, EXACT_NORMALS ? exact_previous : previous);
+}
+
+precise vec3 sum_of(vec3 a, vec3 b, vec3 c)
+{
+    precise vec3 result = (a + b) + c;
+    return result;
+}
+
+precise vec3 difference(vec3 a, vec3 b)
+{
+    precise vec3 result = a - b;
+    return result;
+}
+
 Evaluated evaluate_triangle(vec3 at)
 {
-    Evaluated result;
-    result.position = vec3(0.0);
-    vec3 by[3] = vec3[3](vec3(0.0), vec3(0.0), vec3(0.0));
-    float product = 12.0 * (at.x * at.y * at.z);
+    CornerTerms terms[3];
     [[unroll]] for (int i = 0; i < 3; ++i) {
-        const int j = (i + 1) % 3;
-        const int k = (i + 2) % 3;
-        float a = at[i];
-        float b = at[j];
-        float c = at[k];
-        vec3 p = control_point[5 * i];
-        vec3 near = control_point[5 * i + 1];
-        vec3 far = control_point[5 * j + 2];
-        vec3 inner = blend(b, control_point[5 * i + 3], c, control_point[5 * i + 4]);
-        float both = 3.0 * a * b * (a + b);
-        result.position += (a * a * a) * p + (both * (a * near + b * far) + (product * a) * inner);
-        by[i] += (3.0 * a * a) * p + (9.0 * a * a * b + 6.0 * a * b * b) * near + (3.0 * b * b * b + 6.0 * a * b * b) * far
-            + (24.0 * a * b * c) * inner;
-        by[j] += (3.0 * a * a * a + 6.0 * a * a * b) * near + (9.0 * a * b * b + 6.0 * a * a * b) * far + (12.0 * a * a * c) * inner;
-        by[k] += (12.0 * a * a * b) * inner;
-        if (EXACT_NORMALS) {
-            by[j] += (product * a) * blend_slope(b, control_point[5 * i + 3], c, control_point[5 * i + 4]);
-            by[k] += (product * a) * blend_slope(c, control_point[5 * i + 4], b, control_point[5 * i + 3]);
-        }
+        const int next = (i + 1) % 3;
+        terms[i] = corner_terms(at[i], at[next], at[(i + 2) % 3], control_point[5 * i], control_point[5 * i + 1],
+                                control_point[5 * next + 2], control_point[5 * i + 3], control_point[5 * i + 4]);
     }
-    result.along_u = by[0] - by[2];
-    result.along_v = by[1] - by[2];
+    vec3 by_0 = sum_of(terms[0].by_own, terms[2].by_next, terms[1].by_previous);
+    vec3 by_1 = sum_of(terms[1].by_own, terms[0].by_next, terms[2].by_previous);
+    vec3 by_2 = sum_of(terms[2].by_own, terms[1].by_next, terms[0].by_previous);
+    Evaluated result;
+    result.position = sum_of(terms[0].position, terms[1].position, terms[2].position);
+    result.along_u = difference(by_0, by_2);
+    result.along_v = difference(by_1, by_2);
     return result;
 }
 
@@ -164,6 +181,8 @@ uint corner_limit(GregoryFace face, bvec4 is_on)
 // Whole patches have the curves' points among their own.
 EdgeFields edge_at(uint edge, bool is_whole)
 {
+    // Where no edge is asked for nothing is read beyond the patch.
+    edge = min(edge, 3u);
     uint next = edge + 1u == (TRIANGLE ? 3u : 4u) ? 0u : edge + 1u;
     uint of_patch[4] = uint[4](5u * edge, 5u * edge + 1u, 5u * next + 2u, 5u * next);
     EdgeFields result;

@@ -230,16 +230,18 @@ void evaluate_edge(EdgeFields edge, Parameter at, out vec3 position, out vec3 no
 }
 
 // (a p + b q) / (a + b), p where both are 0.
-vec3 blend(float a, vec3 p, float b, vec3 q)
+precise vec3 blend(float a, vec3 p, float b, vec3 q)
 {
-    float total = a + b;
-    return total == 0.0 ? p : (a * p + b * q) / total;
+    precise float total = a + b;
+    precise vec3 result = (a * p + b * q) / total;
+    return total == 0.0 ? p : result;
 }
 
 // What the blend changes by with a; with b by -a / b of it.
-vec3 blend_slope(float a, vec3 p, float b, vec3 q)
+precise vec3 blend_slope(float a, vec3 p, float b, vec3 q)
 {
-    float total = a + b;
-    return total == 0.0 ? vec3(0.0) : (p - q) * (b / (total * total));
+    precise float total = a + b;
+    precise vec3 result = (p - q) * (b / (total * total));
+    return total == 0.0 ? vec3(0.0) : result;
 }
 #endif

@@ -37,7 +37,8 @@ TexPoint tree_tex_point(SceneTables scene, Object object, uint ptex_face, vec2 u
             p[i] = scene.v.tex_coords.v[scene.v.face_tex_coords.v[4u * index + i]];
         }
         vec2 rest = 1.0 - uv;
-        result.at = rest.y * (rest.x * p[0] + uv.x * p[1]) + uv.y * (rest.x * p[3] + uv.x * p[2]);
+        precise vec2 at = rest.y * (rest.x * p[0] + uv.x * p[1]) + uv.y * (rest.x * p[3] + uv.x * p[2]);
+        result.at = at;
         result.along_u = scale * (rest.y * (p[1] - p[0]) + uv.y * (p[2] - p[3]));
         result.along_v = scale * (rest.x * (p[3] - p[0]) + uv.x * (p[2] - p[1]));
         return result;
@@ -52,7 +53,8 @@ TexPoint tree_tex_point(SceneTables scene, Object object, uint ptex_face, vec2 u
     vec4 dv;
     cubic_basis(uv.x, 1.0 - uv.x, nu, du);
     cubic_basis(uv.y, 1.0 - uv.y, nv, dv);
-    result.at = weigh_patch(p, nu, nv).xy / 36.0;
+    precise vec3 at = weigh_patch(p, nu, nv) / 36.0;
+    result.at = at.xy;
     result.along_u = weigh_patch(p, du, nv).xy * (scale / 12.0);
     result.along_v = weigh_patch(p, nu, dv).xy * (scale / 12.0);
     return result;

@@ -219,9 +219,6 @@ pub struct BenchArguments {
     /// Spacing of tessellated points
     #[arg(long, value_enum, default_value_t = SpacingName::Equal)]
     pub spacing: SpacingName,
-    /// Normals of Gregory patches: of their Bezier form, exact along edges, or of the rational patch
-    #[arg(long, value_enum, default_value_t = GregoryNormalsName::Approximate)]
-    pub gregory_normals: GregoryNormalsName,
     /// Trade bitwise equal seams for speed
     #[arg(long)]
     pub no_watertight: bool,
@@ -284,7 +281,7 @@ pub struct SurfaceArguments {
     /// How control points of Gregory patches are made
     #[arg(long, value_enum, default_value_t = GregoryPointsName::TwoStage)]
     pub gregory: GregoryPointsName,
-    /// What irregular faces are drawn as where --max-level ends refinement, by methods fas and dfas
+    /// What irregular faces are drawn as where --max-level ends refinement, by methods fas and dfas; gregory does not refine
     #[arg(long, value_enum, default_value_t = EndCapName::Quad)]
     pub end_cap: EndCapName,
     /// Normals of Gregory patches: of their Bezier form, exact along edges, or of the rational patch

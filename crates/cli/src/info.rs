@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use anyhow::{Context, Result};
+use planish_render::spokes::{FACE_BYTES, SPOKE_BYTES, STENCIL_BYTES};
 use planish_render::{Preprocessed, SurfaceDesc, SurfaceMethod, preprocess};
 use planish_subdiv::edits::deepest_level;
 use planish_subdiv::mesh::{
@@ -18,7 +19,7 @@ use crate::bench::median;
 use crate::cage::{Cage, MeshFacts};
 use crate::console::{Console, print_output};
 use crate::frames::FrameRange;
-use crate::offline::Plan;
+use crate::offline::{Plan, check_gregory};
 use crate::stats::method_name;
 use crate::text_table::{TextTable, bytes_text, milliseconds_text};
 
@@ -46,14 +47,18 @@ fn surface_desc(arguments: &InfoArguments, cage: &Cage) -> Result<SurfaceDesc> {
             surface.check_available()?;
             let crease_patches = surface.crease_patches.into();
             let gregory_points = surface.gregory.into();
-            Ok(SurfaceDesc {
-                method: surface.method()?,
-                level,
+            let method = surface.method()?;
+            let desc = SurfaceDesc {
+                method,
+                // One patch a face of the cage: nothing is refined.
+                level: if method == SurfaceMethod::Gregory { 0 } else { level },
                 crease_patches,
                 end_cap: surface.end_cap.into(),
                 displaced: false,
                 gregory_points,
-            })
+            };
+            check_gregory(cage, &desc)?;
+            Ok(desc)
         }
         _ => Ok(Plan::unseen(cage, surface, &arguments.view, FrameRange::single(0))?.desc),
     }
@@ -285,7 +290,11 @@ impl RefinementInfo {
     fn levels_table(&self) -> TextTable {
         let columns = ["level", "points", "regular", "transition", "quad", "Gregory quad", "Gregory triangle"];
         // Methods without Gregory patches have no columns for them.
-        let count = if self.method == "gregory" { columns.len() } else { 5 };
+        let count = if self.levels.iter().any(|level| level.gregory_quad + level.gregory_triangle > 0) {
+            columns.len()
+        } else {
+            5
+        };
         let mut table = TextTable::new(&columns[..count]);
         let mut sum = LevelInfo::default();
         let row = |name: String, level: &LevelInfo| {
@@ -328,22 +337,21 @@ fn patch_counts(desc: &SurfaceDesc, made: &Preprocessed) -> Vec<PatchCounts> {
         counts[made.tables.last_level as usize].filling = made.tables.filling.len() as u32;
         return counts;
     }
-    if desc.method == SurfaceMethod::Gregory {
-        counts[0].regular = made.tables.patches.len() as u32;
-        for (face, gregory) in made.tables.irregular.iter().zip(&made.tables.gregory.faces) {
-            match gregory.kind {
-                GregoryKind::Quad | GregoryKind::PartOfNgon => counts[usize::from(face.info.level)].gregory += 1,
-                GregoryKind::PartOfTriangle(0) => counts[0].triangle += 1,
-                GregoryKind::PartOfTriangle(_) | GregoryKind::None => {}
-            }
-        }
-        return counts;
-    }
     for mesh in &made.meshes {
         for (sum, level) in counts.iter_mut().zip(deepest_cut(&made.tables, mesh).counts) {
             sum.regular += level.regular;
             sum.transition += level.transition;
             sum.filling += level.filling;
+        }
+    }
+    // Of the leaves those that are Gregory patches.
+    for (face, gregory) in made.tables.irregular.iter().zip(&made.tables.gregory.faces) {
+        let level = usize::from(face.info.level);
+        counts[level].filling -= u32::from(gregory.kind != GregoryKind::None);
+        match gregory.kind {
+            GregoryKind::Quad | GregoryKind::PartOfNgon => counts[level].gregory += 1,
+            GregoryKind::PartOfTriangle(0) => counts[level - 1].triangle += 1,
+            GregoryKind::PartOfTriangle(_) | GregoryKind::None => {}
         }
     }
     counts
@@ -352,18 +360,18 @@ fn patch_counts(desc: &SurfaceDesc, made: &Preprocessed) -> Vec<PatchCounts> {
 /// Bytes of stencils of Gregory patches on a device.
 fn stencil_bytes(table: &GregoryTable) -> u64 {
     let stencils = &table.stencils;
-    let faces = stencils.faces.len() * size_of::<[u32; 4 + 4]>();
+    let faces = stencils.faces.len() * STENCIL_BYTES;
     (faces + size_of_val(stencils.rings.as_slice()) + size_of_val(stencils.weights.as_slice())) as u64
 }
 
 /// Bytes of Gregory patches on a device: faces and stencils, and spokes if any are used.
 fn gregory_bytes(table: &GregoryTable) -> u64 {
     let spokes = table.of_limit.len() * size_of::<[u32; 2]>()
-        + table.spokes.len() * size_of::<[u32; 7 + 3]>()
+        + table.spokes.len() * SPOKE_BYTES
         + size_of_val(table.indices.as_slice())
         + size_of_val(table.weights.as_slice());
     let spokes = if table.needs_spokes() { spokes } else { 0 };
-    (table.faces.len() * size_of::<[u32; 4 * 5 + 1]>() + spokes) as u64 + stencil_bytes(table)
+    (table.faces.len() * FACE_BYTES + spokes) as u64 + stencil_bytes(table)
 }
 
 /// Bytes that the tables take on a device.

@@ -153,15 +153,18 @@ impl Plan {
     }
 }
 
-/// Refuses what method gregory does not have.
-fn check_gregory(cage: &Cage, plan: &Plan) -> Result<()> {
-    if plan.desc.method != SurfaceMethod::Gregory && cage.is_displaced() {
+/// Refuses what Gregory patches do not have, for surfaces that have some.
+pub fn check_gregory(cage: &Cage, desc: &SurfaceDesc) -> Result<()> {
+    if !desc.has_gregory_patches() {
+        return Ok(());
+    }
+    if desc.method != SurfaceMethod::Gregory && cage.is_displaced() {
         bail!("Gregory patches as end caps are not displaced: expected no displacement map");
     }
     if cage.meshes().iter().any(|mesh| !mesh.edits.is_empty()) {
         bail!("Gregory patches are those of the cage's own levels: expected no hierarchical edits");
     }
-    if plan.desc.crease_patches == CreasePatches::Single {
+    if desc.crease_patches == CreasePatches::Single {
         bail!("Gregory patches have no closed form of semi-sharp creases: expected --crease-patches infinite or none");
     }
     Ok(())
@@ -246,9 +249,7 @@ impl Session {
         if plan.desc.method == SurfaceMethod::Uniform && cage.is_displaced() {
             bail!("{}: method uniform draws the limit surface: expected no displacement map", named());
         }
-        if plan.desc.has_gregory_patches() {
-            check_gregory(cage, plan).with_context(named)?;
-        }
+        check_gregory(cage, &plan.desc).with_context(named)?;
         let made = preprocess(&cage.meshes(), &plan.desc).with_context(named)?;
         let mut surface = Surface::new(device, &cage.meshes(), &plan.objects, plan.desc, made).with_context(named)?;
         cage.displace_surface(device, &mut surface)?;

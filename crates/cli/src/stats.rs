@@ -162,8 +162,8 @@ impl FrameStats {
             counts[level_count - 1].filling = tables.filling.len() as u32;
         }
         let sum = |of: fn(&PatchCounts) -> u32| counts.iter().map(|level| u64::from(of(level))).sum();
-        // No refinement had to end: there is none.
-        let is_gregory = session.surface.desc().method == SurfaceMethod::Gregory;
+        // Gregory patches are as fine as others.
+        let has_gregory = session.surface.desc().has_gregory_patches();
         let transition = sum(|level| level.transition);
         // Levels that no patch is of are not told, but level 0 is.
         let count = |c: &PatchCounts| u64::from(c.total());
@@ -176,7 +176,7 @@ impl FrameStats {
                 quad: sum(|level| level.filling),
                 gregory_quad: sum(|level| level.gregory),
                 gregory_triangle: sum(|level| level.triangle),
-                truncated: if is_gregory { 0 } else { u64::from(drawn.status.counts.truncated) },
+                truncated: if has_gregory { 0 } else { u64::from(drawn.status.counts.truncated) },
             },
             subpatches: transition,
             patches_by_level: counts[..used].iter().map(count).collect(),

@@ -23,6 +23,7 @@ pub struct FrameStages {
     limit: Limit,
     spokes: Option<SpokeStage>,
     emit: Emit,
+    needs: FrameNeeds,
 }
 
 impl FrameStages {
@@ -34,13 +35,20 @@ impl FrameStages {
             limit: Limit::new(device, needs)?,
             spokes: needs.gregory.then(|| SpokeStage::new(device)).transpose()?,
             emit: Emit::new(device, needs)?,
+            needs: *needs,
         })
     }
 
     /// Records: cages to points, density, select, subdivide, limit, emit. Takes the times `start`, `density`, `select`,
     /// `subdivide`, `limit` and `emit`; uniform refinement has no density, select and emit. How the frame is seen, selected and
     /// culled is what [`Surface::set_frame`] said last when it runs.
+    ///
+    /// # Panics
+    /// If these are stages for other surfaces: with Gregory patches where it has none, or the other way round.
     pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
+        let (needs, desc) = (&self.needs, &surface.desc);
+        assert_eq!(needs.gregory, desc.has_gregory_patches(), "stages and surface have Gregory patches");
+        assert!(!needs.gregory || needs.gregory_points == desc.gregory_points, "one way to make Gregory patches");
         keep(encoder, surface);
         encoder.timestamp("start");
         Select::record_start(encoder, surface);

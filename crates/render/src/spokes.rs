@@ -13,6 +13,13 @@ use crate::select::head_offset;
 use crate::surface::Surface;
 use crate::upload::address;
 
+/// Bytes of a Gregory face on a device,
+pub const FACE_BYTES: usize = size_of::<planish_shaders::GregoryFace>();
+/// of a spoke,
+pub const SPOKE_BYTES: usize = size_of::<planish_shaders::Spoke>();
+/// and of a face's stencil.
+pub const STENCIL_BYTES: usize = size_of::<planish_shaders::GregoryStencil>();
+
 /// The stage's program.
 pub(crate) struct SpokeStage(ComputePipeline);
 

@@ -74,6 +74,7 @@ pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) ->
             watertight,
             displaced: cage.is_displaced(),
             gregory: method == SurfaceMethod::Gregory,
+            filling: method != SurfaceMethod::Gregory,
             gregory_points,
             ..frame_needs(arguments.spacing.into(), tess_factor, &objects)
         },

@@ -68,12 +68,14 @@ impl EdgeOwner {
     fn of(level: &Level, half_edge: u32) -> Self {
         let twin = level.twin(half_edge);
         let sharing = if twin == half_edge { level.sharing(&half_edge) } else { std::slice::from_ref(&twin) };
-        let first = sharing.iter().copied().filter(|&other| other != NONE).fold(half_edge, u32::min);
+        // Holes have no texture coordinates.
+        let drawn = |&other: &u32| other != NONE && level.is_drawn(level.face(other));
+        let first = sharing.iter().copied().filter(drawn).fold(half_edge, u32::min);
         let face = level.face(first);
         let (corner, sides) = (first - level.half_edges(face).start, level.sides(face));
         let base = level.locations[face as usize].ptex_face;
         let is_reversed = level.origin(first) != level.origin(half_edge);
-        let is_alone = sharing.iter().all(|&other| other == half_edge);
+        let is_alone = sharing.iter().filter(|other| drawn(other)).all(|&other| other == half_edge);
         let flags = if is_reversed { Self::REVERSED } else { 0 } | if is_alone { Self::ALONE } else { 0 };
         if sides == 4 {
             return Self { faces: [base; 2], flags: flags | corner };
@@ -188,6 +190,10 @@ impl<'a> GregoryBuilder<'a> {
     pub fn finish(mut self, limit_count: usize) -> GregoryTable {
         self.table.of_limit = vec![[0, 0]; limit_count];
         for (&(_, limit), known) in &self.known {
+            debug_assert_eq!(
+                self.table.of_limit[limit as usize][1], 0,
+                "Gregory patches at a limit point are of one level"
+            );
             self.table.of_limit[limit as usize] = [known.first, known.spokes.weights.len() as u32];
         }
         let GregoryTable { faces, spokes, indices, .. } = &self.table;
