@@ -114,8 +114,8 @@ fn write_pictures(
     let distance: fn(Deviation) -> f64 = |deviation| deviation.distance;
     let degrees: fn(Deviation) -> f64 = |deviation| deviation.angle.map_or(f64::NAN, f64::to_degrees);
     let wanted = [
-        (&arguments.output, distance, arguments.scale, "a distance of"),
-        (&arguments.normal_view, degrees, arguments.normal_scale, "degrees:"),
+        (&arguments.output, distance, arguments.scale, "units of length"),
+        (&arguments.normal_view, degrees, arguments.normal_scale, "degrees"),
     ];
     for (path, value, scale, unit) in wanted {
         let Some(path) = path else { continue };
@@ -125,7 +125,7 @@ fn write_pictures(
         let inverse = if scale > 0.0 { scale.recip() } else { 0.0 };
         let scaled = values.map(|values| values.map(|value| value * inverse));
         write_image(&picture::draw(a.triangles.iter().zip(scaled), &view), path)?;
-        console.explain(format_args!("{}: red is {unit} {scale:e}", path.display()));
+        console.explain(format_args!("{}: red is {scale:.4e} {unit}", path.display()));
     }
     Ok(())
 }

@@ -75,15 +75,15 @@ impl Soup {
                 Corner { position: vertex.position.into(), normal: vertex.normal.into(), uv: vertex.uv.into() };
             let is_finite = corner.position.is_finite() && corner.normal.is_finite();
             if !is_finite {
-                fault.get_or_insert_with(|| (index, "numbers that are not finite", "finite ones"));
+                fault.get_or_insert((index, "numbers that are not finite", "finite ones"));
             }
             if !(corner.uv.cmpge(Vec2::ZERO) & corner.uv.cmple(Vec2::ONE)).all() {
-                fault.get_or_insert_with(|| (index, "u and v outside of the face", "0 to 1"));
+                fault.get_or_insert((index, "u and v outside of the face", "0 to 1"));
             }
             corners.push((vertex.face, corner));
             if let [(face, a), (second, b), (third, c)] = corners[..] {
                 if face != second || face != third {
-                    fault.get_or_insert_with(|| (index, "a triangle of several faces", "one face a triangle"));
+                    fault.get_or_insert((index, "a triangle of several faces", "one face a triangle"));
                 }
                 triangles.push(Triangle { face, corners: [a, b, c] });
                 corners.clear();

@@ -226,7 +226,7 @@ fn pictures_show_the_greatest_deviation_red_and_none_blue() {
 }
 
 #[test]
-fn deviations_of_directions_alone_are_angles() {
+fn points_of_a_plane_deviate_by_distance_alone() {
     let triangle = square(1, Vec3::ZERO).triangles[0];
     let (a, b) = (triangle.at([0.5, 0.5, 0.0]), triangle.at([0.5, 0.25, 0.25]));
     let deviation = Deviation::between(&a, &b);
