@@ -118,3 +118,33 @@ fn a_surface_that_moves_everywhere_alike_keeps_its_normals() {
         assert!(off < 1e-5, "{vertex:?}");
     }
 }
+
+/// A sheet of 4 x 4 faces whose texture coordinates lie in the middle of a map, with a hole at (1, 1).
+fn holed_sheet() -> String {
+    let mut text = String::new();
+    let places = || (0..5).flat_map(|j| (0..5).map(move |i| (f64::from(i), f64::from(j))));
+    places().for_each(|(x, y)| text += &format!("v {x} {y} 0\n"));
+    places().for_each(|(x, y)| text += &format!("vt {} {}\n", 0.4 + 0.1 * x, 0.4 + 0.1 * y));
+    for a in (0..4).flat_map(|j| (1..5).map(move |i| 5 * j + i)) {
+        let corner = |v: u32| format!("{v}/{v}");
+        text += &format!("f {} {} {} {}\n", corner(a), corner(a + 1), corner(a + 6), corner(a + 5));
+    }
+    text + "t hole 1/0/0 5\n"
+}
+
+#[test]
+fn beside_a_hole_a_point_is_looked_up_at_its_own_texture_coordinates() {
+    let folder = temporary();
+    let mesh = folder.path().join("sheet.obj");
+    std::fs::write(&mesh, holed_sheet()).expect("a file");
+    // The map moves what is at (0, 0), where the hole's faces would be looked up, and nothing else.
+    let map = folder.path().join("map.png");
+    write_map(&map, 16, |x, y| if x < 4 && y >= 12 { [255; 3] } else { [0; 3] });
+    for method in ["gregory", "fas"] {
+        let path = folder.path().join("dump.ply");
+        let flags = format!("--tess 6 --method {method} --displacement-scale 1 --displacement");
+        Planish::dump(&mesh, &path).flags(&flags).path(&map).run().silent_success().unwrap();
+        let heights = Dump::read(&path).unwrap().vertices().map(|vertex| vertex.position[2].abs()).collect::<Vec<_>>();
+        assert!(heights.len() > 500 && heights.iter().all(|&height| height < 1e-6), "{method}");
+    }
+}
