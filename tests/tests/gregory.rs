@@ -20,10 +20,17 @@ fn meshes() -> Vec<PathBuf> {
 }
 
 #[test]
-fn dumps_of_every_mesh_are_closed_and_cover_every_face() {
+fn dumps_are_closed_and_cover_every_face() {
     // All spacings, in turn: how edges are divided does not depend on what the patch is.
     let flags = ["--tess 5.3", "--tess 4.6 --spacing fractional-even", "--tess 3 --spacing equal"];
-    let cases: Vec<_> = meshes().into_iter().zip(flags.into_iter().cycle()).collect();
+    // Of the scenes about rules every other one: each process takes a second.
+    let mut meshes = meshes();
+    let mut rules = 0;
+    meshes.retain(|mesh| {
+        rules += usize::from(is_about_rules(mesh));
+        !is_about_rules(mesh) || rules % 2 == 0
+    });
+    let cases: Vec<_> = meshes.into_iter().zip(flags.into_iter().cycle()).collect();
     check_all(&cases, |(mesh, flags)| check_approximation(mesh, &format!("--method gregory {flags}")).map(|_| ()));
 }
 
