@@ -173,20 +173,7 @@ pub fn check_gregory(cage: &Cage, desc: &SurfaceDesc) -> Result<()> {
 /// What frames of about this density need; nothing is culled, and seams are watertight. Twice as dense a frame, of a cage that moves, has all it needs.
 pub fn frame_needs(spacing: Spacing, density: f32, objects: &[ObjectDesc]) -> FrameNeeds {
     let placed = objects.iter().any(|object| object.to_world != Affine3A::IDENTITY);
-    FrameNeeds {
-        spacing,
-        culls: false,
-        placed,
-        cuts: 2.0 * density > MAX_UNCUT_DENSITY,
-        watertight: true,
-        displaced: false,
-        tex_coords: false,
-        gregory: false,
-        filling: true,
-        gregory_points: GregoryPoints::TwoStage,
-        exact_normals: false,
-        colors: false,
-    }
+    FrameNeeds { culls: false, placed, cuts: 2.0 * density > MAX_UNCUT_DENSITY, ..FrameNeeds::all(spacing) }
 }
 
 /// How a method selects; nothing is culled.

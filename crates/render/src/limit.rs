@@ -3,7 +3,7 @@
 
 use planish_gpu::{ComputePipeline, Device, Encoder};
 use planish_shaders::limit_comp::{PROGRAM, Push};
-use planish_shaders::{LimitPoint, LimitTangents};
+use planish_shaders::{DeviceAddress, Indices, LimitPoint, LimitTangents, ListHeads};
 use planish_subdiv::tables::Tables;
 
 use crate::error::Error;
@@ -24,24 +24,40 @@ impl Limit {
 
     /// Records one dispatch over all limit points in use.
     pub(crate) fn record(&self, encoder: &mut Encoder, surface: &Surface) {
-        let phase = surface.phases.limits();
-        if surface.phases.rows[phase][1] == 0 {
-            return;
-        }
-        let (tables, frame, heads) = (&surface.buffers, &surface.frame, &surface.lists.heads);
-        let first_item = surface.phases.first_items()[phase];
-        let list = LIST_PHASES + phase;
+        let Some(LimitsInUse { in_use, head, list }) = LimitsInUse::of(surface) else { return };
+        let (tables, frame) = (&surface.buffers, &surface.frame);
         let push = Push {
             points: address(&frame.points),
             limits: address(&frame.limits),
             rows: address(&tables.limit_rows),
             indices: address(&tables.limit_indices),
             weights: address(&tables.limit_weights),
-            in_use: address::<planish_shaders::Indices>(&frame.in_use).offset(first_item.into()),
-            head: address::<planish_shaders::ListHeads>(heads).offset(list as u64),
+            in_use,
+            head,
             tangents: address(&frame.limit_tangents),
         };
-        encoder.compute_indirect(&self.0, &push, heads, head_offset(list));
+        encoder.compute_indirect(&self.0, &push, &surface.lists.heads, head_offset(list));
+    }
+}
+
+/// The list of limit points in use: which they are, and how many.
+pub(crate) struct LimitsInUse {
+    pub in_use: DeviceAddress<Indices>,
+    pub head: DeviceAddress<ListHeads>,
+    /// Its number.
+    pub list: usize,
+}
+
+impl LimitsInUse {
+    /// None for surfaces without limit points.
+    pub fn of(surface: &Surface) -> Option<Self> {
+        let phase = surface.phases.limits();
+        let list = LIST_PHASES + phase;
+        (surface.phases.rows[phase][1] > 0).then(|| Self {
+            in_use: address::<Indices>(&surface.frame.in_use).offset(surface.phases.first_items()[phase].into()),
+            head: address::<ListHeads>(&surface.lists.heads).offset(list as u64),
+            list,
+        })
     }
 }
 

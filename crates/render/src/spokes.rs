@@ -7,7 +7,7 @@ use planish_subdiv::tables::Tables;
 use planish_subdiv::topology::NONE;
 
 use crate::error::Error;
-use crate::lists::LIST_PHASES;
+use crate::limit::LimitsInUse;
 use crate::program::compute_pipeline;
 use crate::select::head_offset;
 use crate::surface::Surface;
@@ -30,13 +30,9 @@ impl SpokeStage {
 
     /// Records one dispatch over all limit points in use; none if all patches have stencils.
     pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
-        let phase = surface.phases.limits();
-        if surface.phases.rows[phase][1] == 0 || !surface.tables.gregory.needs_spokes() {
-            return;
-        }
-        let (tables, frame, heads) = (&surface.buffers, &surface.frame, &surface.lists.heads);
-        let first_item = surface.phases.first_items()[phase];
-        let list = LIST_PHASES + phase;
+        let limits = LimitsInUse::of(surface).filter(|_| surface.tables.gregory.needs_spokes());
+        let Some(LimitsInUse { in_use, head, list }) = limits else { return };
+        let (tables, frame) = (&surface.buffers, &surface.frame);
         let push = Push {
             points: address(&frame.points),
             limits: address(&frame.limits),
@@ -46,10 +42,10 @@ impl SpokeStage {
             indices: address(&tables.spoke_indices),
             weights: address(&tables.spoke_weights),
             made: address(&frame.spoke_points),
-            in_use: address::<planish_shaders::Indices>(&frame.in_use).offset(first_item.into()),
-            head: address::<planish_shaders::ListHeads>(heads).offset(list as u64),
+            in_use,
+            head,
         };
-        encoder.compute_indirect(&self.0, &push, heads, head_offset(list));
+        encoder.compute_indirect(&self.0, &push, &surface.lists.heads, head_offset(list));
     }
 }
 
