@@ -45,7 +45,8 @@ fn an_isolated_vertex_gives_three_patches_a_face_and_level_two_of_them_transitio
         let levels = depth as u64;
         let transition = 2 * n * levels;
         let patches = json!({
-            "regular": 3 * n * (levels + 1) - transition, "transition": transition, "quad": n, "truncated": 0
+            "regular": 3 * n * (levels + 1) - transition, "transition": transition,
+            "quad": n, "gregory_quad": 0, "gregory_triangle": 0, "truncated": 0,
         });
         let by_level: Vec<u64> = (0..=levels).map(|level| 3 * n + if level == levels { n } else { 0 }).collect();
         let tess = 1 << depth;
@@ -98,7 +99,7 @@ fn check_growth(path: &Path) {
                 let points = vertices + 12 * faces;
                 let expected = json!({
                     "points": points, "regular": 3 * faces - transition, "transition": transition,
-                    "quad": if is_last { faces } else { 0 },
+                    "quad": if is_last { faces } else { 0 }, "gregory_quad": 0, "gregory_triangle": 0,
                 });
                 assert_eq!(level, &expected, "{} level {index} of {depth}", path.display());
             }
