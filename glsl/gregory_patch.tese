@@ -29,13 +29,10 @@ layout(location = 9) in vec3 curve_point[];
 layout(location = 10) in vec3 curve_across[];
 #include "shared/domain.glsl"
 #include "shared/border.glsl"
+#include "shared/gregory_seams.glsl"
 #include "shared/gregory_displacement.glsl"
-
-struct Evaluated {
-    vec3 position;
-    vec3 along_u; // tangents; of a triangle towards corner 0 and corner 1, away from corner 2
-    vec3 along_v;
-};
+#include "shared/gregory_triangle.glsl"
+#include "shared/gregory_colors.glsl"
 
 Evaluated evaluate_quad(Parameter u, Parameter v)
 {
@@ -79,86 +76,6 @@ Evaluated evaluate_quad(Parameter u, Parameter v)
         }
     }
     return result;
-}
-
-// Barycentric coordinates of a point of a third of a triangle, which is bilinear between its corner, the middle of the next edge, the
-// centre and the middle of the edge before. Both thirds at a line inside get the same bits.
-precise vec3 barycentric(uint part, Parameter u, Parameter v)
-{
-    precise float next = 0.5 * (u.t * v.s);
-    precise float previous = 0.5 * (u.s * v.t);
-    precise float centre = (u.t * v.t) / 3.0;
-    precise float own = (u.s * v.s + (next + previous)) + centre;
-    precise float to_next = next + centre;
-    precise float to_previous = previous + centre;
-    precise vec3 result = part == 0u ? vec3(own, to_next, to_previous)
-                                     : (part == 1u ? vec3(to_previous, own, to_next) : vec3(to_next, to_previous, own));
-    return result;
-}
-
-// What a corner of a triangle adds: to the position, and to its derivatives by the coordinates of the corner, of the next one and of
-// the one before. All thirds add the same, whichever pipeline draws them.
-struct CornerTerms {
-    vec3 position;
-    vec3 by_own;
-    vec3 by_next;
-    vec3 by_previous;
-};
-
-// a, b and c are those coordinates; p, near and far control points along the next edge, plus and minus the face points.
-CornerTerms corner_terms(float a, float b, float c, vec3 p, vec3 near, vec3 far, vec3 plus, vec3 minus)
-{
-    precise vec3 inner = blend(b, plus, c, minus);
-    precise float both = 3.0 * ((a * b) * (a + b));
-    precise float product = 12.0 * ((a * a) * (b * c));
-    precise vec3 position = ((a * a) * a) * p + (both * (a * near + b * far) + product * inner);
-    precise vec3 by_own = (3.0 * (a * a)) * p
-        + (((9.0 * a + 6.0 * b) * (a * b)) * near + ((3.0 * b + 6.0 * a) * (b * b)) * far + (24.0 * ((a * b) * c)) * inner);
-    precise vec3 next = ((3.0 * a + 6.0 * b) * (a * a)) * near + ((9.0 * b + 6.0 * a) * (a * b)) * far + (12.0 * ((a * a) * c)) * inner;
-    precise vec3 previous = (12.0 * ((a * a) * b)) * inner;
-    precise vec3 exact_next = next + product * blend_slope(b, plus, c, minus);
-    precise vec3 exact_previous = previous + product * blend_slope(c, minus, b, plus);
-    return CornerTerms(position, by_own, EXACT_NORMALS ? exact_next : next, EXACT_NORMALS ? exact_previous : previous);
-}
-
-precise vec3 sum_of(vec3 a, vec3 b, vec3 c)
-{
-    precise vec3 result = (a + b) + c;
-    return result;
-}
-
-precise vec3 difference(vec3 a, vec3 b)
-{
-    precise vec3 result = a - b;
-    return result;
-}
-
-Evaluated evaluate_triangle(vec3 at)
-{
-    CornerTerms terms[3];
-    [[unroll]] for (int i = 0; i < 3; ++i) {
-        const int next = (i + 1) % 3;
-        terms[i] = corner_terms(at[i], at[next], at[(i + 2) % 3], control_point[5 * i], control_point[5 * i + 1],
-                                control_point[5 * next + 2], control_point[5 * i + 3], control_point[5 * i + 4]);
-    }
-    vec3 by_0 = sum_of(terms[0].by_own, terms[2].by_next, terms[1].by_previous);
-    vec3 by_1 = sum_of(terms[1].by_own, terms[0].by_next, terms[2].by_previous);
-    vec3 by_2 = sum_of(terms[2].by_own, terms[1].by_next, terms[0].by_previous);
-    Evaluated result;
-    result.position = sum_of(terms[0].position, terms[1].position, terms[2].position);
-    result.along_u = difference(by_0, by_2);
-    result.along_v = difference(by_1, by_2);
-    return result;
-}
-
-// The half of an edge at its first end, or at the other, as spacing.glsl has the points of an edge of two halves.
-Parameter in_half(Parameter along, bool is_second)
-{
-    precise float near = 0.5 * along.t;
-    precise float far = 0.5 + 0.5 * along.s;
-    precise float beyond = 0.5 + 0.5 * along.t;
-    precise float rest = 0.5 * along.s;
-    return is_second ? Parameter(beyond, rest) : Parameter(near, far);
 }
 
 // The limit point that a corner of the patch is, or NONE.
@@ -226,8 +143,8 @@ Seam seam_at(GregoryFace face, bvec4 is_on, Parameter u, Parameter v)
     return result;
 }
 
-// Makes a point on edges what both sides have there. The bicubic patch across an edge decides, else the two patches have the same curve
-// and the same field across it. `border_normal` becomes that patch's.
+// Makes a point on edges what both sides have there: two patches have the same curve and the same field across it, unless a bicubic
+// patch decides. `border_normal` becomes that patch's.
 void share_point(Seam seam, Parameter u, Parameter v, inout vec3 position, inout vec3 normal, out vec3 border_normal)
 {
     border_normal = normal;
@@ -237,117 +154,10 @@ void share_point(Seam seam, Parameter u, Parameter v, inout vec3 position, inout
         evaluate_edge(edge_at(seam.edge, is_whole), seam.at, position, shared_normal);
         normal = seam.is_sharp ? normal : shared_normal;
     }
-    for (bool is_open = seam.border != NONE && seam.limit == NONE; is_open; is_open = false) {
-        BorderPoint border = border_point(seam.border, (seam.edge & 1u) == 0u ? u : v);
-        if (!seam.is_sharp || DISPLACED) {
-            vec3 p[16];
-            border_points(border, p);
-            vec4 nu;
-            vec4 du;
-            vec4 nv;
-            vec4 dv;
-            cubic_basis(border.u.t, border.u.s, nu, du);
-            cubic_basis(border.v.t, border.v.s, nv, dv);
-            vec3 along_u;
-            vec3 along_v;
-            weigh_patch_and_tangents(p, nu, du, nv, dv, position, along_u, along_v);
-            position = over_36(position);
-            border_normal = without_sign_of_zero(unit_normal(along_u, along_v));
-            normal = seam.is_sharp ? normal : border_normal;
-        }
-        if (seam.is_sharp) {
-            vec3 q[4];
-            border_curve(border, q);
-            position = curve_position(q, border_weights(border));
-        }
-    }
-    for (bool is_open = seam.limit != NONE; is_open; is_open = false) {
-        SceneTables scene = push.frame.v.scene;
-        Object object = scene.v.objects.v[patch_places.y];
-        LimitPoint point = scene.v.limits.v[seam.limit];
-        position = to_world(object, point.position);
-        normal = normal_to_world(object, point.normal);
-    }
+    share_border(seam, u, v, position, normal, border_normal);
+    share_corner(seam.limit, position, normal);
     position = without_sign_of_zero(position);
     normal = without_sign_of_zero(normal);
-}
-
-// The tangents of a triangle along u and v of one of its thirds.
-void tangents_of_part(uint part, Parameter u, Parameter v, inout vec3 along_u, inout vec3 along_v)
-{
-    // How the coordinates of the part's own corner and of the next one change; the three sum to 1.
-    vec2 own = vec2(-0.5 * v.s - v.t / 6.0, -0.5 * u.s - u.t / 6.0);
-    vec2 next = vec2(0.5 * v.s + v.t / 3.0, -u.t / 6.0);
-    vec2 previous = -own - next;
-    vec2 first = part == 0u ? own : (part == 1u ? previous : next);
-    vec2 second = part == 1u ? own : (part == 2u ? previous : next);
-    vec3 a = along_u;
-    vec3 b = along_v;
-    along_u = first.x * a + second.x * b;
-    along_v = first.y * a + second.y * b;
-}
-
-// The colour at a point of a patch whose control points have these colours, by the weights of its position.
-vec3 quad_color(Points colors, uint first, Parameter u, Parameter v)
-{
-    vec4 nu;
-    vec4 nv;
-    vec4 slope;
-    bernstein(u.t, u.s, nu, slope);
-    bernstein(v.t, v.s, nv, slope);
-    vec4 plus = vec4(u.t, v.t, u.s, v.s);
-    vec4 minus = vec4(v.t, u.s, v.s, u.t);
-    vec3 sum = vec3(0.0);
-    [[dont_unroll]] for (uint i = 0u; i < 4u; ++i) {
-        // Weights of the corner's own end of each axis, and of the points a third away; e+ of corners 1 and 3 lies along v.
-        bool is_high_u = i == 1u || i == 2u;
-        bool is_high_v = i >= 2u;
-        vec2 near = vec2(is_high_u ? nu.w : nu.x, is_high_v ? nv.w : nv.x);
-        vec2 inner = vec2(is_high_u ? nu.z : nu.y, is_high_v ? nv.z : nv.y);
-        bool is_turned = (i & 1u) != 0u;
-        float along_u = inner.x * near.y;
-        float along_v = near.x * inner.y;
-        uint at = first + 5u * i;
-        sum += (near.x * near.y) * colors.v[at];
-        sum += (is_turned ? along_v : along_u) * colors.v[at + 1u] + (is_turned ? along_u : along_v) * colors.v[at + 2u];
-        sum += (inner.x * inner.y) * blend(plus[i], colors.v[at + 3u], minus[i], colors.v[at + 4u]);
-    }
-    return sum;
-}
-
-vec3 triangle_color(Points colors, uint first, vec3 at)
-{
-    vec3 sum = vec3(0.0);
-    [[dont_unroll]] for (uint i = 0u; i < 3u; ++i) {
-        uint next = i == 2u ? 0u : i + 1u;
-        float a = at[i];
-        float b = at[next];
-        float c = at[3u - i - next];
-        vec3 inner = blend(b, colors.v[first + 5u * i + 3u], c, colors.v[first + 5u * i + 4u]);
-        vec3 on_edge = a * colors.v[first + 5u * i + 1u] + b * colors.v[first + 5u * next + 2u];
-        sum += (a * a * a) * colors.v[first + 5u * i] + (3.0 * a * b * (a + b)) * on_edge + (12.0 * a * a * b * c) * inner;
-    }
-    return sum;
-}
-
-vec3 point_color(Parameter u, Parameter v, PatchInfo info)
-{
-    SceneTables scene = push.frame.v.scene;
-    Object object = scene.v.objects.v[patch_places.y];
-    vec3 result = vec3(1.0);
-    for (bool is_open = (object.flags & OBJECT_VERTEX_COLORS) != 0u; is_open; is_open = false) {
-        uint first = 20u * patch_places.x;
-        if (TRIANGLE) {
-            uint part = gregory_part(scene.v.gregory.v[patch_places.x]);
-            result = triangle_color(scene.v.gregory_colors, first, barycentric(part, u, v));
-        } else {
-            result = quad_color(scene.v.gregory_colors, first, u, v);
-        }
-    }
-    for (bool is_open = (object.flags & OBJECT_VARYING_COLORS) != 0u; is_open; is_open = false) {
-        result = varying_color(scene, object, info.ptex_face - object.first_face, ptex_uv(info, vec2(u.t, v.t)));
-    }
-    return result;
 }
 
 void main()

@@ -212,7 +212,20 @@ precise vec3 weigh_ends(vec3 a, vec3 b, vec3 c, vec3 d, vec4 w)
     return sum;
 }
 
-// Position on the curve along an edge, and the normal of both sides there: by the derivative along the edge, and the field across.
+// The normal of both sides of an edge: by the derivative along it, in Bezier form over 3, and the field across.
+vec3 edge_normal(vec3 u0, vec3 u1, vec3 u2, vec3 across[4], Parameter at)
+{
+    precise vec4 n;
+    precise vec4 d;
+    bernstein(at.t, at.s, n, d);
+    precise float ss = at.s * at.s;
+    precise float tt = at.t * at.t;
+    precise float ts = 2.0 * (at.t * at.s);
+    precise vec3 along = (u0 * ss + u2 * tt) + u1 * ts;
+    return unit_normal(along, weigh_ends(across[0], across[1], across[2], across[3], n));
+}
+
+// Position on the curve along an edge, and the normal of both sides there.
 void evaluate_edge(EdgeFields edge, Parameter at, out vec3 position, out vec3 normal)
 {
     precise vec4 n;
@@ -222,11 +235,7 @@ void evaluate_edge(EdgeFields edge, Parameter at, out vec3 position, out vec3 no
     precise vec3 u0 = edge.curve[1] - edge.curve[0];
     precise vec3 u1 = edge.curve[2] - edge.curve[1];
     precise vec3 u2 = edge.curve[3] - edge.curve[2];
-    precise float ss = at.s * at.s;
-    precise float tt = at.t * at.t;
-    precise float ts = 2.0 * (at.t * at.s);
-    precise vec3 along = (u0 * ss + u2 * tt) + u1 * ts;
-    normal = unit_normal(along, weigh_ends(edge.across[0], edge.across[1], edge.across[2], edge.across[3], n));
+    normal = edge_normal(u0, u1, u2, edge.across, at);
 }
 
 // (a p + b q) / (a + b), p where both are 0.

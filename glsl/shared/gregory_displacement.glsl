@@ -3,23 +3,8 @@
 #ifndef PLANISH_GREGORY_DISPLACEMENT
 #define PLANISH_GREGORY_DISPLACEMENT
 #include "gregory.glsl"
+#include "gregory_seams.glsl"
 #include "patch_maps.glsl"
-
-// On which of the edges that the patch shares a point lies, if it lies on edges.
-struct Seam {
-    uint edge;       // of the shared curves, NONE for none
-    Parameter at;    // on it
-    uint of_face;    // number of the edge among those of the face
-    bool is_outer;   // an edge of the face, and not one inside, between its parts
-    bool is_sharp;   // no smooth surface lies across
-    uint limit;      // the limit point that it is, or NONE
-    uint border;     // word of the bicubic patch across, or NONE
-};
-
-Parameter turned(Parameter along)
-{
-    return Parameter(along.s, along.t);
-}
 
 MapPlace place_in_face(SceneTables scene, Object object, uint ptex_face, Parameter u, Parameter v)
 {

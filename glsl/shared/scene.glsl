@@ -179,6 +179,7 @@ struct SceneData {
     IrregularFaces irregular;
     GregoryFaces gregory;
     SpokePoints spokes;
+    Points spoke_middles;       // of ACC and Pm-patches
     GregoryStencils stencils;   // of Gregory patches
     RingPoints stencil_points;
     Weights stencil_weights;

@@ -115,6 +115,15 @@ struct Spoke {
     StencilRow row;  // of the vector beside
 };
 
+// What a limit point gives to the patches along an edge by ACC or for Pm-patches: rows whose first index is the point that the others
+// are taken from.
+struct RivalSpoke {
+    StencilRow edge;   // from the limit point to the end of a third of the tangent along the edge
+    StencilRow across; // derivative across it
+    StencilRow beside; // 3/2 of what lies between the inner points of both faces
+    StencilRow middle; // to the middle of these
+};
+
 // What a limit point gives: the edge point, and two vectors to the left of the edge.
 struct SpokePoint {
     vec3 edge;
@@ -180,6 +189,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Gre
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer GregoryStencils { GregoryStencil v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RingPoints { uvec2 v[]; }; // point and column
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Spokes { Spoke v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RivalSpokes { RivalSpoke v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SpokeRanges { uvec2 v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SpokePoints { SpokePoint v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FillingQuads { FillingQuad v[]; };

@@ -299,9 +299,14 @@ impl SurfaceArguments {
             MethodName::Fas => Ok(SurfaceMethod::Fas),
             MethodName::Dfas => Ok(SurfaceMethod::Dfas),
             MethodName::Gregory => Ok(SurfaceMethod::Gregory),
+            MethodName::Acc => Ok(SurfaceMethod::Acc),
+            MethodName::Pm => Ok(SurfaceMethod::Pm),
             MethodName::Uniform => Ok(SurfaceMethod::Uniform),
             other @ MethodName::Table => {
-                bail!("method {} is not available yet (available: fas, dfas, gregory, uniform)", name_of(other))
+                bail!(
+                    "method {} is not available yet (available: fas, dfas, gregory, acc, pm, uniform)",
+                    name_of(other)
+                )
             }
         }
     }

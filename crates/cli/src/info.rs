@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use anyhow::{Context, Result};
-use planish_render::spokes::{FACE_BYTES, SPOKE_BYTES, STENCIL_BYTES};
+use planish_render::spokes::{FACE_BYTES, RIVAL_SPOKE_BYTES, SPOKE_BYTES, STENCIL_BYTES};
 use planish_render::{Preprocessed, SurfaceDesc, SurfaceMethod, preprocess};
 use planish_subdiv::edits::deepest_level;
 use planish_subdiv::mesh::{
@@ -51,7 +51,7 @@ fn surface_desc(arguments: &InfoArguments, cage: &Cage) -> Result<SurfaceDesc> {
             let desc = SurfaceDesc {
                 method,
                 // One patch a face of the cage: nothing is refined.
-                level: if method == SurfaceMethod::Gregory { 0 } else { level },
+                level: if method.is_one_patch_a_face() { 0 } else { level },
                 crease_patches,
                 end_cap: surface.end_cap.into(),
                 displaced: false,
@@ -368,6 +368,7 @@ fn stencil_bytes(table: &GregoryTable) -> u64 {
 fn gregory_bytes(table: &GregoryTable) -> u64 {
     let spokes = table.of_limit.len() * size_of::<[u32; 2]>()
         + table.spokes.len() * SPOKE_BYTES
+        + table.rival_spokes.len() * RIVAL_SPOKE_BYTES
         + size_of_val(table.indices.as_slice())
         + size_of_val(table.weights.as_slice());
     let spokes = if table.needs_spokes() { spokes } else { 0 };

@@ -11,6 +11,10 @@ pub enum MethodName {
     Fas,
     Dfas,
     Gregory,
+    /// Approximate Catmull-Clark patches, to compare with: closed meshes of quads
+    Acc,
+    /// Pm-patches, to compare with: closed meshes of quads
+    Pm,
     Table,
     Uniform,
 }

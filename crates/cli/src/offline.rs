@@ -107,10 +107,11 @@ impl Plan {
             let frame_camera = frame_camera(camera, setting.size);
             density = density.max(largest_density(&cage.meshes(), &seen, &frame_camera, &setting.options)?);
         }
-        let is_gregory = setting.method == SurfaceMethod::Gregory;
+        let is_gregory = setting.method.is_one_patch_a_face();
         let level = if is_gregory { 0 } else { isolation_level(density, setting.max_level) };
         // Stencils are over the cage: end caps lie deeper.
-        let gregory_points = if is_gregory { setting.gregory_points } else { GregoryPoints::TwoStage };
+        let gregory_points =
+            if setting.method == SurfaceMethod::Gregory { setting.gregory_points } else { GregoryPoints::TwoStage };
         let desc = SurfaceDesc {
             method: setting.method,
             level,
@@ -124,6 +125,7 @@ impl Plan {
             displaced: cage.is_displaced(),
             tex_coords: cage.has_uv(),
             gregory: desc.has_gregory_patches(),
+            rival: desc.method.rival(),
             filling: !is_gregory,
             gregory_points,
             exact_normals: setting.exact_normals,
@@ -160,9 +162,6 @@ pub fn check_gregory(cage: &Cage, desc: &SurfaceDesc) -> Result<()> {
     }
     if desc.method != SurfaceMethod::Gregory && cage.is_displaced() {
         bail!("Gregory patches as end caps are not displaced: expected no displacement map");
-    }
-    if cage.meshes().iter().any(|mesh| !mesh.edits.is_empty()) {
-        bail!("Gregory patches are those of the cage's own levels: expected no hierarchical edits");
     }
     if desc.crease_patches == CreasePatches::Single {
         bail!("Gregory patches have no closed form of semi-sharp creases: expected --crease-patches infinite or none");

@@ -235,6 +235,8 @@ pub fn method_name(method: SurfaceMethod) -> &'static str {
         SurfaceMethod::Fas => "fas",
         SurfaceMethod::Dfas => "dfas",
         SurfaceMethod::Gregory => "gregory",
+        SurfaceMethod::Acc => "acc",
+        SurfaceMethod::Pm => "pm",
         SurfaceMethod::Uniform => "uniform",
     }
 }

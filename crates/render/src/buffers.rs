@@ -5,8 +5,8 @@ use planish_shaders as shaders;
 use planish_shaders::{DrawEntry, DrawHead, FrameCounts, FrameData, FrameInput, ListHead, ListItem, Object, SceneData};
 use planish_subdiv::patch::{FillingQuad, PatchInfo, RegularPatch};
 use planish_subdiv::tables::{
-    Border, GregoryFace, GregoryKind, GregoryStencils, IndexLists, IrregularFace, PatchSeams, Spoke, StencilFace,
-    Tables,
+    Border, GregoryFace, GregoryKind, GregoryStencils, IndexLists, IrregularFace, PatchSeams, RivalSpokeRows, Spoke,
+    StencilFace, Tables,
 };
 use planish_subdiv::topology::NONE;
 
@@ -35,6 +35,7 @@ pub(crate) struct TableBuffers {
     pub gregory: Buffer,
     pub spoke_ranges: Buffer,
     pub spokes: Buffer,
+    pub rival_spokes: Buffer,
     pub spoke_indices: Buffer,
     pub spoke_weights: Buffer,
     pub stencil_faces: Buffer,
@@ -74,6 +75,11 @@ impl TableBuffers {
                 "spokes",
                 &only_if(needs_spokes, &tables.gregory.spokes).iter().map(spoke).collect::<Vec<_>>(),
             )?,
+            rival_spokes: table(
+                device,
+                "spokes of ACC or Pm-patches",
+                &tables.gregory.rival_spokes.iter().map(rival_spoke).collect::<Vec<_>>(),
+            )?,
             spoke_indices: table(device, "spoke indices", only_if(needs_spokes, &tables.gregory.indices))?,
             spoke_weights: table(device, "spoke weights", only_if(needs_spokes, &tables.gregory.weights))?,
             stencil_faces: table(device, "stencil faces", &stencil_faces(gregory_stencils))?,
@@ -105,6 +111,7 @@ impl TableBuffers {
             &self.gregory,
             &self.spoke_ranges,
             &self.spokes,
+            &self.rival_spokes,
             &self.spoke_indices,
             &self.spoke_weights,
             &self.stencil_faces,
@@ -132,6 +139,7 @@ pub(crate) struct FrameBuffers {
     pub limits: Buffer,
     pub limit_tangents: Buffer,
     pub spoke_points: Buffer,
+    pub spoke_middles: Buffer,
     pub densities: Buffer,
     pub split_edges: Buffer,
     pub star_marks: Buffer,
@@ -151,7 +159,7 @@ impl FrameBuffers {
     ) -> Result<Self, Error> {
         let object_buffer = mapped::<Object>(device, "objects", objects.len() as u32)?;
         object_buffer.write(0, objects)?;
-        let spoke_count = if tables.gregory.needs_spokes() { tables.gregory.spokes.len() } else { 0 };
+        let spoke_count = if tables.gregory.needs_spokes() { tables.gregory.spoke_count() } else { 0 };
         let tangent_count = tables.limit_seats.len().max(tables.gregory.of_limit.len());
         let all_rows: Vec<u32> = Phases::new(tables).rows.iter().flat_map(|&[first, n]| first..first + n).collect();
         Ok(Self {
@@ -164,7 +172,8 @@ impl FrameBuffers {
             points: array::<shaders::Points>(device, "points", tables.point_count())?,
             limits: array::<shaders::LimitPoint>(device, "limit points", tables.limit_point_count())?,
             limit_tangents: array::<shaders::LimitTangents>(device, "limit tangents", tangent_count as u32)?,
-            spoke_points: array::<shaders::SpokePoint>(device, "spoke points", spoke_count as u32)?,
+            spoke_points: array::<shaders::SpokePoint>(device, "spoke points", spoke_count)?,
+            spoke_middles: array::<shaders::Points>(device, "spoke middles", tables.gregory.rival_spokes.len() as u32)?,
             densities: array::<shaders::SlotDensity>(device, "densities", sizes.slots)?,
             split_edges: array::<u32>(device, "split edges", sizes.edges.div_ceil(32))?,
             star_marks: array::<u32>(device, "star marks", tables.stars.count().div_ceil(32))?,
@@ -176,7 +185,7 @@ impl FrameBuffers {
         })
     }
 
-    pub fn all(&self) -> [&Buffer; 17] {
+    pub fn all(&self) -> [&Buffer; 18] {
         [
             &self.scene,
             &self.input,
@@ -188,6 +197,7 @@ impl FrameBuffers {
             &self.limits,
             &self.limit_tangents,
             &self.spoke_points,
+            &self.spoke_middles,
             &self.densities,
             &self.split_edges,
             &self.star_marks,
@@ -378,6 +388,15 @@ fn spoke(spoke: &Spoke) -> shaders::Spoke {
         before,
         after,
         row: row(&spoke.row),
+    }
+}
+
+fn rival_spoke(spoke: &RivalSpokeRows) -> shaders::RivalSpoke {
+    shaders::RivalSpoke {
+        edge: row(&spoke.edge),
+        across: row(&spoke.across),
+        beside: row(&spoke.beside),
+        middle: row(&spoke.middle),
     }
 }
 

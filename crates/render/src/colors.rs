@@ -50,6 +50,9 @@ const GREGORY_POINTS: usize = 20;
 /// The colours of the control points of all Gregory patches, made as the points themselves are.
 fn gregory_values(tables: &Tables, cage_values: &[[f32; 3]]) -> Vec<[f32; 3]> {
     let mut values = vec![WHITE; GREGORY_POINTS * tables.gregory.faces.len()];
+    if tables.gregory.rival.is_some() {
+        return values;
+    }
     let surface = GregorySurface::of_values(tables, cage_values);
     for (face, values) in (0..).zip(values.chunks_exact_mut(GREGORY_POINTS)) {
         let points = surface.patch(face).map_or_else(Vec::new, |patch| patch.points);

@@ -12,6 +12,14 @@ pub enum Error {
     /// The device failed.
     #[error(transparent)]
     Gpu(#[from] planish_gpu::Error),
+    /// A scheme that is there to compare with has no part in this.
+    #[error("method {method} is there to compare with: expected no {what}")]
+    Rival {
+        /// The scheme.
+        method: &'static str,
+        /// What it has not.
+        what: &'static str,
+    },
     /// A tess factor that is no number of segments.
     #[error("tess factor {factor} is out of range: expected a number from 1 to 16000")]
     TessFactor {

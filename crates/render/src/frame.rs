@@ -33,7 +33,7 @@ impl FrameStages {
             select: Select::new(device, needs)?,
             subdivide: Subdivide::new(device)?,
             limit: Limit::new(device, needs)?,
-            spokes: needs.gregory.then(|| SpokeStage::new(device)).transpose()?,
+            spokes: needs.gregory.then(|| SpokeStage::new(device, needs.rival.is_some())).transpose()?,
             emit: Emit::new(device, needs)?,
             needs: *needs,
         })
@@ -48,6 +48,7 @@ impl FrameStages {
     pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
         let (needs, desc) = (&self.needs, &surface.desc);
         assert_eq!(needs.gregory, desc.has_gregory_patches(), "stages and surface have Gregory patches");
+        assert_eq!(needs.rival, desc.method.rival(), "stages and surface have patches of one scheme");
         assert!(!needs.gregory || needs.gregory_points == desc.gregory_points, "one way to make Gregory patches");
         keep(encoder, surface);
         encoder.timestamp("start");

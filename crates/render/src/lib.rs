@@ -24,6 +24,7 @@ pub mod objects;
 pub mod options;
 mod pipelines;
 mod program;
+pub mod rival_spokes;
 mod select;
 pub mod spokes;
 pub mod subdivide;

@@ -22,7 +22,7 @@ pub enum PatchKind {
     Filling,
     /// Pieces of regular and transition patches that need more segments than the tessellator makes.
     Cut,
-    /// Gregory patches of 20 points.
+    /// Gregory patches of 20 points; or ACC or Pm-patches.
     Gregory,
     /// Pieces of them.
     GregoryCut,
@@ -61,6 +61,7 @@ impl PatchKind {
             SurfaceMethod::Gregory => {
                 &[Self::Regular, Self::Cut, Self::Gregory, Self::GregoryCut, Self::Triangle, Self::TriangleCut]
             }
+            SurfaceMethod::Acc | SurfaceMethod::Pm => &[Self::Regular, Self::Cut, Self::Gregory, Self::GregoryCut],
             SurfaceMethod::Uniform => &[Self::Filling],
         }
     }

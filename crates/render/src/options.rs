@@ -1,5 +1,7 @@
 //! What a frame is asked to be.
 
+use planish_subdiv::gregory::Rival;
+
 use crate::targets::Layers;
 
 /// How the irregular parts of a surface are evaluated.
@@ -12,8 +14,28 @@ pub enum SurfaceMethod {
     Fas,
     /// One Gregory patch for each irregular face of the cage (Loop et al. 2009): an approximation.
     Gregory,
+    /// Approximate Catmull-Clark patches of them (Loop and Schaefer 2008), to compare with: closed meshes of quads.
+    Acc,
+    /// Pm-patches of them (Myles, Ni and Peters 2008), to compare with: closed meshes of quads.
+    Pm,
     /// Global table-driven refinement drawn as triangles: the baseline of FAS section 8.1.
     Uniform,
+}
+
+impl SurfaceMethod {
+    /// Whether every irregular face of the cage is one patch, and nothing is refined.
+    pub fn is_one_patch_a_face(self) -> bool {
+        matches!(self, Self::Gregory | Self::Acc | Self::Pm)
+    }
+
+    /// The scheme of these patches, if they are no Gregory patches.
+    pub fn rival(self) -> Option<Rival> {
+        match self {
+            Self::Acc => Some(Rival::Acc),
+            Self::Pm => Some(Rival::Pm),
+            Self::Dfas | Self::Fas | Self::Gregory | Self::Uniform => None,
+        }
+    }
 }
 
 /// How the control points of Gregory patches are made.
@@ -116,6 +138,8 @@ pub struct FrameNeeds {
     pub tex_coords: bool,
     /// Irregular faces, where refinement ends, are Gregory patches ([`SurfaceMethod::Gregory`], [`EndCap::Gregory`]).
     pub gregory: bool,
+    /// Or rather patches of this scheme.
+    pub rival: Option<Rival>,
     /// Other leaves are patch-filling quads all the same.
     pub filling: bool,
     /// How their control points are made: as the surface's are ([`crate::SurfaceDesc::gregory_points`]).
@@ -138,6 +162,7 @@ impl FrameNeeds {
             displaced: false,
             tex_coords: false,
             gregory: false,
+            rival: None,
             filling: true,
             gregory_points: GregoryPoints::TwoStage,
             exact_normals: false,
@@ -188,7 +213,7 @@ impl View {
             Self::Shaded | Self::Wire => 0,
             Self::Normal => 1,
             // In the colours of the Gregory paper.
-            Self::Patch if method == SurfaceMethod::Gregory => 7,
+            Self::Patch if method.is_one_patch_a_face() => 7,
             Self::Patch => 2,
             Self::Level => 3,
             Self::Tess => 4,

@@ -5,6 +5,7 @@ use planish_gpu::{
 };
 use planish_shaders as shaders;
 use planish_shaders::{DrawPush, ShaderModule};
+use planish_subdiv::gregory::Rival;
 
 use crate::error::Error;
 use crate::lists::PatchKind;
@@ -92,7 +93,7 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
         .iter()
         .map(|module| {
             let knows = |constant: &&SpecConstant| module.spec_constants.iter().any(|known| known.id == constant.id);
-            let is_patch = ["bspline_patch", "filling_quad", "gregory_patch", "uniform_quad"]
+            let is_patch = ["bspline_patch", "filling_quad", "gregory_patch", "acc_patch", "pm_patch", "uniform_quad"]
                 .iter()
                 .any(|stem| module.name.starts_with(stem));
             patch_constants.iter().filter(|_| is_patch).filter(knows).copied().collect()
@@ -153,6 +154,9 @@ fn geometry_stages(options: &PipelineOptions, kind: PatchKind) -> Vec<&'static S
     }
     let list = &shaders::patch_list_vert::PROGRAM;
     if matches!(kind, PatchKind::Gregory | PatchKind::GregoryCut | PatchKind::Triangle | PatchKind::TriangleCut) {
+        if let Some(rival) = options.method.rival() {
+            return rival_stages(list, rival, pick);
+        }
         let evaluation = pick(
             &shaders::gregory_patch_lean_tese::PROGRAM,
             &shaders::gregory_patch_layers_tese::PROGRAM,
@@ -179,6 +183,40 @@ fn geometry_stages(options: &PipelineOptions, kind: PatchKind) -> Vec<&'static S
     vec![list, &shaders::filling_quad_tesc::PROGRAM, evaluation]
 }
 
+/// Those of ACC or Pm-patches; `pick` chooses by what they make.
+fn rival_stages(
+    list: &'static ShaderModule,
+    rival: Rival,
+    pick: impl Fn(
+        &'static ShaderModule,
+        &'static ShaderModule,
+        &'static ShaderModule,
+        &'static ShaderModule,
+    ) -> &'static ShaderModule,
+) -> Vec<&'static ShaderModule> {
+    let (control, evaluation) = match rival {
+        Rival::Acc => (
+            &shaders::acc_patch_tesc::PROGRAM,
+            pick(
+                &shaders::acc_patch_lean_tese::PROGRAM,
+                &shaders::acc_patch_layers_tese::PROGRAM,
+                &shaders::acc_patch_colors_tese::PROGRAM,
+                &shaders::acc_patch_dump_tese::PROGRAM,
+            ),
+        ),
+        Rival::Pm => (
+            &shaders::pm_patch_tesc::PROGRAM,
+            pick(
+                &shaders::pm_patch_lean_tese::PROGRAM,
+                &shaders::pm_patch_layers_tese::PROGRAM,
+                &shaders::pm_patch_colors_tese::PROGRAM,
+                &shaders::pm_patch_dump_tese::PROGRAM,
+            ),
+        ),
+    };
+    vec![list, control, evaluation]
+}
+
 /// The stage after rasterization.
 fn fragment_stage(layers: Layers) -> &'static ShaderModule {
     match layers {
@@ -195,6 +233,10 @@ fn pass_name(options: &PipelineOptions, kind: PatchKind) -> &'static str {
         (_, PatchKind::Transition) => "transition patches",
         (_, PatchKind::Filling) => "filling quads",
         (_, PatchKind::Cut) => "cut patches",
+        (SurfaceMethod::Acc, PatchKind::Gregory) => "ACC patches",
+        (SurfaceMethod::Acc, PatchKind::GregoryCut) => "cut ACC patches",
+        (SurfaceMethod::Pm, PatchKind::Gregory) => "Pm-patches",
+        (SurfaceMethod::Pm, PatchKind::GregoryCut) => "cut Pm-patches",
         (_, PatchKind::Gregory) => "Gregory quads",
         (_, PatchKind::GregoryCut) => "cut Gregory quads",
         (_, PatchKind::Triangle) => "Gregory triangles",

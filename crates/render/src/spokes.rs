@@ -9,6 +9,7 @@ use planish_subdiv::topology::NONE;
 use crate::error::Error;
 use crate::limit::LimitsInUse;
 use crate::program::compute_pipeline;
+use crate::rival_spokes;
 use crate::select::head_offset;
 use crate::surface::Surface;
 use crate::upload::address;
@@ -17,21 +18,33 @@ use crate::upload::address;
 pub const FACE_BYTES: usize = size_of::<planish_shaders::GregoryFace>();
 /// of a spoke,
 pub const SPOKE_BYTES: usize = size_of::<planish_shaders::Spoke>();
+/// of one of another scheme,
+pub const RIVAL_SPOKE_BYTES: usize = size_of::<planish_shaders::RivalSpoke>();
 /// and of a face's stencil.
 pub const STENCIL_BYTES: usize = size_of::<planish_shaders::GregoryStencil>();
 
 /// The stage's program.
-pub(crate) struct SpokeStage(ComputePipeline);
+pub(crate) struct SpokeStage {
+    pipeline: ComputePipeline,
+    /// The patches are those of another scheme.
+    is_of_rival: bool,
+}
 
 impl SpokeStage {
-    pub fn new(device: &Device) -> Result<Self, Error> {
-        compute_pipeline(device, &PROGRAM).map(Self)
+    pub fn new(device: &Device, is_of_rival: bool) -> Result<Self, Error> {
+        let program = if is_of_rival { &planish_shaders::rival_spokes_comp::PROGRAM } else { &PROGRAM };
+        Ok(Self { pipeline: compute_pipeline(device, program)?, is_of_rival })
     }
 
     /// Records one dispatch over all limit points in use; none if all patches have stencils.
     pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
         let limits = LimitsInUse::of(surface).filter(|_| surface.tables.gregory.needs_spokes());
-        let Some(LimitsInUse { in_use, head, list }) = limits else { return };
+        let Some(limits) = limits else { return };
+        let LimitsInUse { in_use, head, list } = limits;
+        if self.is_of_rival {
+            let push = rival_spokes::push(surface, &limits);
+            return encoder.compute_indirect(&self.pipeline, &push, &surface.lists.heads, head_offset(list));
+        }
         let (tables, frame) = (&surface.buffers, &surface.frame);
         let push = Push {
             points: address(&frame.points),
@@ -45,7 +58,7 @@ impl SpokeStage {
             in_use,
             head,
         };
-        encoder.compute_indirect(&self.0, &push, &surface.lists.heads, head_offset(list));
+        encoder.compute_indirect(&self.pipeline, &push, &surface.lists.heads, head_offset(list));
     }
 }
 

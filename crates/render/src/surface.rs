@@ -7,7 +7,7 @@ use planish_gpu::Device;
 use planish_shaders as shaders;
 use planish_shaders::{DeviceAddress, DrawHead, FrameCounts, FrameData, FrameInput, ListHead, Object, SceneData};
 use planish_subdiv::ControlMesh;
-use planish_subdiv::mesh::HierarchicalEdit;
+use planish_subdiv::mesh::{HierarchicalEdit, VertexInterpolation};
 use planish_subdiv::refine::{CreasePatches, RefineOptions, Refinement};
 use planish_subdiv::tables::{MeshRanges, Tables, TexTree};
 
@@ -20,7 +20,7 @@ use crate::error::Error;
 use crate::lists::{Capacities, Phases, Status};
 use crate::marks::Marks;
 use crate::objects::{CageFacts, MeshFacts, ObjectDesc};
-use crate::options::{EndCap, FrameOptions, GregoryPoints, SurfaceMethod};
+use crate::options::{Culling, EndCap, FrameOptions, GregoryPoints, SurfaceMethod};
 use crate::upload::address;
 
 /// What to make of cages.
@@ -44,7 +44,7 @@ impl SurfaceDesc {
     /// Whether some irregular faces are Gregory patches.
     pub fn has_gregory_patches(&self) -> bool {
         let is_capped = self.end_cap == EndCap::Gregory && self.method != SurfaceMethod::Uniform;
-        self.method == SurfaceMethod::Gregory || is_capped
+        self.method.is_one_patch_a_face() || is_capped
     }
 
     /// Whether regular patches may have a semi-sharp crease.
@@ -86,6 +86,18 @@ pub struct Preprocessed {
     pub times: PreprocessTimes,
 }
 
+/// Refuses what schemes that are there to compare with have no part in.
+fn refuse_rival(desc: &SurfaceDesc, is_asked: bool, what: &'static str) -> Result<(), Error> {
+    match desc.method.rival().filter(|_| is_asked) {
+        Some(rival) => Err(Error::Rival { method: rival.name(), what }),
+        None => Ok(()),
+    }
+}
+
+fn has_vertex_colors(mesh: &ControlMesh) -> bool {
+    mesh.colors.as_ref().is_some_and(|colors| colors.interpolation == VertexInterpolation::Vertex)
+}
+
 /// Refines cages and builds their tables, on one thread of the CPU.
 pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preprocessed, Error> {
     let options = RefineOptions {
@@ -94,9 +106,16 @@ pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preproc
         crease_patches: desc.crease_patches,
         displaced: desc.displaced,
         gregory: desc.has_gregory_patches(),
+        rival: desc.method.rival(),
         gregory_stencils: desc.method == SurfaceMethod::Gregory && desc.gregory_points == GregoryPoints::Stencil,
         ignores_channels: !desc.displaced,
     };
+    refuse_rival(desc, desc.displaced, "displacement map")?;
+    refuse_rival(
+        desc,
+        meshes.iter().any(|mesh| has_vertex_colors(mesh)),
+        "colours that are subdivided as positions are",
+    )?;
     let mut times = PreprocessTimes::default();
     let mut parts = Vec::with_capacity(meshes.len());
     for mesh in meshes {
@@ -168,7 +187,7 @@ impl Surface {
         let buffers = TableBuffers::new(device, &tables, &marks, &density_scales)?;
         let frame = FrameBuffers::new(device, &tables, &gpu_objects, &sizes, &marks)?;
         let lists = ListBuffers::new(device, &capacities, &phases, desc.method)?;
-        let tex_coords = if desc.displaced && desc.method == SurfaceMethod::Gregory {
+        let tex_coords = if desc.displaced && desc.method.is_one_patch_a_face() {
             TexCoordBuffers::of_tables_and_tree(device, &tables, &tex_tree(meshes, &ranges)?)?
         } else {
             TexCoordBuffers::of_tables(device, &tables)?
@@ -291,7 +310,12 @@ impl Surface {
 
     /// What [`Self::set_frame`] tells the kernels.
     pub fn frame_input(&self, camera: &FrameCamera, options: &FrameOptions) -> Result<FrameInput, Error> {
-        frame_input(camera, options, self.desc.level, self.objects.len() as u32, self.sub_pixel_bits)
+        let mut options = *options;
+        if self.desc.method.rival().is_some() {
+            // What is tested are the points of Gregory patches.
+            options.culling = Culling::Off;
+        }
+        frame_input(camera, &options, self.desc.level, self.objects.len() as u32, self.sub_pixel_bits)
     }
 
     /// Makes room for what did not fit in the last frame's lists; whether there was anything. Frames must be recorded anew then.
@@ -315,6 +339,7 @@ impl Surface {
             irregular: address(&tables.irregular),
             gregory: address(&tables.gregory),
             spokes: address(&frame.spoke_points),
+            spoke_middles: address(&frame.spoke_middles),
             stencils: address(&tables.stencil_faces),
             stencil_points: address(&tables.stencil_rings),
             stencil_weights: address(&tables.stencil_weights),
@@ -435,7 +460,12 @@ impl Surface {
 
     /// The spokes of limit points as the last frame left them; waits for the device. For tests.
     pub fn download_spokes(&self, device: &Device) -> Result<Vec<shaders::SpokePoint>, Error> {
-        Ok(device.download(&self.frame.spoke_points, 0, self.tables.gregory.spokes.len())?)
+        Ok(device.download(&self.frame.spoke_points, 0, self.tables.gregory.spoke_count() as usize)?)
+    }
+
+    /// The middles of spokes of ACC or Pm-patches as the last frame left them; waits for the device. For tests.
+    pub fn download_spoke_middles(&self, device: &Device) -> Result<Vec<[f32; 3]>, Error> {
+        Ok(device.download(&self.frame.spoke_middles, 0, self.tables.gregory.rival_spokes.len())?)
     }
 
     /// Densities of all objects' slots as the last frame left them; waits for the device.

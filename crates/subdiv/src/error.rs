@@ -43,6 +43,21 @@ pub enum Error {
         /// The vertex.
         vertex: u32,
     },
+    /// Hierarchical edits of a mesh that is drawn as Gregory patches.
+    #[error("Gregory patches are those of the cage's own levels: expected no hierarchical edits")]
+    EditedGregory,
+    /// A cage that a scheme for closed meshes of quads has no patches for.
+    #[error(
+        "face {face} (from 0) {found}: method {method} expects quads alone, and smooth ones at vertices of other than four faces"
+    )]
+    RivalCage {
+        /// The scheme.
+        method: &'static str,
+        /// The face.
+        face: u32,
+        /// What is wrong with it.
+        found: String,
+    },
     /// A hierarchical edit's path is too short to name anything.
     #[error("edit {edit} (from 0) has a path of fewer than two entries")]
     EditPath {

@@ -10,6 +10,7 @@ use std::collections::{HashMap, HashSet};
 use crate::edits::{self, PathEdits};
 use crate::error::Error;
 use crate::face_varying::{Channel, ChannelLevel};
+use crate::gregory::Rival;
 use crate::mesh::{ControlMesh, Creasing, HierarchicalEdit, INFINITE_SHARPNESS, MAX_ELEMENTS};
 use crate::rules;
 use crate::sharpness::{SharpnessAtVertex, child_sharpness};
@@ -48,6 +49,8 @@ pub struct RefineOptions {
     pub gregory: bool,
     /// Their control points have stencils over the cage's points ([`crate::tables::GregoryStencils`]).
     pub gregory_stencils: bool,
+    /// They are patches of this scheme instead.
+    pub rival: Option<Rival>,
     /// Face-varying channels are left out: the surface is not refined for their sake.
     pub ignores_channels: bool,
 }
@@ -106,6 +109,9 @@ impl Refinement {
         if options.max_level > MAX_LEVEL {
             return Err(Error::MaxLevel { asked: options.max_level, max: MAX_LEVEL });
         }
+        if options.gregory && !mesh.edits.is_empty() {
+            return Err(Error::EditedGregory);
+        }
         let mut levels = vec![Level::from_mesh(mesh)?];
         let has_non_quads = mesh.face_sizes.iter().any(|&n| n != 4);
         let last_level = options.max_level.max(u32::from(has_non_quads)).max(edits::deepest_level(mesh));
@@ -127,6 +133,9 @@ impl Refinement {
             for faces in [&mut forced, &mut irregular] {
                 faces.sort_unstable();
                 faces.dedup();
+            }
+            if let Some(rival) = options.rival.filter(|_| k == 0) {
+                rival.check(level, &irregular)?;
             }
             let split_here = if options.uniform || k < options.max_level { irregular.clone() } else { forced.clone() };
             if k < last_level {

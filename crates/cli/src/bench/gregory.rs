@@ -16,11 +16,13 @@ use crate::text_table::milliseconds_text;
 /// Segments along an edge that the paper has (6 and 10), and finer ones.
 const TESS_FACTORS: [f32; 4] = [6.0, 10.0, 17.0, 25.0];
 /// What is compared; the third is the measure of the others.
-const METHODS: [(&str, SurfaceMethod, GregoryPoints); 4] = [
+const METHODS: [(&str, SurfaceMethod, GregoryPoints); 6] = [
     ("fas", SurfaceMethod::Fas, GregoryPoints::TwoStage),
     ("dfas", SurfaceMethod::Dfas, GregoryPoints::TwoStage),
     ("gregory two-stage", SurfaceMethod::Gregory, GregoryPoints::TwoStage),
     ("gregory stencil", SurfaceMethod::Gregory, GregoryPoints::Stencil),
+    ("acc", SurfaceMethod::Acc, GregoryPoints::TwoStage),
+    ("pm", SurfaceMethod::Pm, GregoryPoints::TwoStage),
 ];
 /// Place of that.
 const TWO_STAGE: usize = 2;
@@ -32,6 +34,8 @@ pub struct GregoryRow {
     method: &'static str,
     #[serde(flatten)]
     measured: Measured,
+    /// Points and vectors that an evaluation shader reads for a point of an irregular face; 0 for methods that have bicubic patches alone.
+    evaluated_points: u32,
     /// Times over those of the two-stage method.
     wall_ratio: f64,
     draw_ratio: f64,
@@ -45,7 +49,7 @@ pub fn run(bench: &Bench, device: &Device, cage: &Cage) -> Result<Vec<GregoryRow
         let mut of_factor = Vec::new();
         for (name, method, gregory_points) in METHODS {
             bench.console.progress(format_args!("{}: tess factor {tess}, {name}", cage.path().display()));
-            let is_gregory = method == SurfaceMethod::Gregory;
+            let is_gregory = method.is_one_patch_a_face();
             let setting = Setting {
                 method,
                 level: if is_gregory { 0 } else { isolation_level(tess, bench.arguments.max_level) },
@@ -54,18 +58,45 @@ pub fn run(bench: &Bench, device: &Device, cage: &Cage) -> Result<Vec<GregoryRow
                 watertight: !bench.arguments.no_watertight,
                 gregory_points,
             };
-            of_factor.push((name, measure(bench, device, cage, setting)?));
+            match measure(bench, device, cage, setting) {
+                Ok(measured) => of_factor.push((name, method, measured)),
+                // The paper's rivals are for closed meshes of quads.
+                Err(error) if method.rival().is_some() && is_no_cage_of_rivals(&error) => {
+                    bench.console.explain(format_args!("{error:#}: left out"));
+                }
+                Err(error) => return Err(error),
+            }
         }
-        let (wall_ms, draw_ms) = (of_factor[TWO_STAGE].1.wall_ms, of_factor[TWO_STAGE].1.gpu_ms.draw);
-        rows.extend(of_factor.into_iter().map(|(method, measured)| GregoryRow {
+        let (wall_ms, draw_ms) = (of_factor[TWO_STAGE].2.wall_ms, of_factor[TWO_STAGE].2.gpu_ms.draw);
+        rows.extend(of_factor.into_iter().map(|(name, method, measured)| GregoryRow {
             tess,
-            method,
+            method: name,
+            evaluated_points: evaluated_points(method),
             wall_ratio: measured.wall_ms / wall_ms,
             draw_ratio: measured.gpu_ms.draw / draw_ms,
             measured,
         }));
     }
     Ok(rows)
+}
+
+/// Points and vectors that an evaluation shader reads for a point of a quad: what its patch is stored as, but for Pm-patches, of whose 24
+/// those of one triangle.
+fn evaluated_points(method: SurfaceMethod) -> u32 {
+    match method {
+        SurfaceMethod::Gregory => 20,
+        SurfaceMethod::Acc => 32,
+        SurfaceMethod::Pm => 14,
+        SurfaceMethod::Fas | SurfaceMethod::Dfas | SurfaceMethod::Uniform => 0,
+    }
+}
+
+fn is_no_cage_of_rivals(error: &anyhow::Error) -> bool {
+    use planish_render::Error;
+    matches!(
+        error.downcast_ref::<Error>(),
+        Some(Error::Rival { .. } | Error::Subdivision(planish_subdiv::Error::RivalCage { .. }))
+    )
 }
 
 /// Points and vectors that a control shader reads for a Gregory patch, in the mean; each is read by more than one of its threads.
@@ -77,8 +108,9 @@ pub fn fetched_points(tables: &Tables) -> f64 {
         // Limit points and origins at the corners, and the ring.
         Some(2 * connectivity.corner_count + connectivity.point_count)
     };
-    // Limit points, and the three of each spoke.
+    // Limit points, and the three of each spoke; four of other schemes.
     let of_spokes = |kind| match kind {
+        GregoryKind::Quad if table.rival.is_some() => 4 + 4 * 8,
         GregoryKind::None => 0,
         GregoryKind::Quad => 4 + 3 * 8,
         GregoryKind::PartOfTriangle(_) => 3 + 3 * 6,
@@ -98,7 +130,8 @@ impl Row for GregoryRow {
             "triangles",
             "TCS patches",
             "TES runs",
-            "points / Gregory patch",
+            "points / patch",
+            "points / TES run",
             "table bytes",
             "limit ms",
             "emit ms",
@@ -116,6 +149,7 @@ impl Row for GregoryRow {
         let counts = [measured.patch_count(), measured.triangles, runs.control_patches, runs.evaluations];
         cells.extend(counts.map(|count| count.to_string()));
         cells.push(format!("{:.1}", measured.gregory_fetched_points));
+        cells.push(self.evaluated_points.to_string());
         cells.push(measured.table_bytes.to_string());
         let times = [measured.gpu_ms.limit, measured.gpu_ms.emit, measured.gpu_ms.draw, measured.wall_ms];
         cells.extend(times.map(milliseconds_text));

@@ -73,8 +73,9 @@ pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) ->
         needs: FrameNeeds {
             watertight,
             displaced: cage.is_displaced(),
-            gregory: method == SurfaceMethod::Gregory,
-            filling: method != SurfaceMethod::Gregory,
+            gregory: method.is_one_patch_a_face(),
+            rival: method.rival(),
+            filling: !method.is_one_patch_a_face(),
             gregory_points,
             ..frame_needs(arguments.spacing.into(), tess_factor, &objects)
         },

@@ -8,6 +8,7 @@ use planish_render::{
     CapturedVertex, DrawOptions, DrawPasses, DumpPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, Layers,
     PatchKind, Spacing, Status, Surface, SurfaceDesc, Targets, View,
 };
+use planish_subdiv::gregory::Rival;
 
 /// All spacings.
 pub const SPACINGS: [Spacing; 3] = [Spacing::Equal, Spacing::FractionalOdd, Spacing::FractionalEven];
@@ -39,6 +40,11 @@ impl Lab {
     /// For Gregory patches.
     pub fn gregory() -> Self {
         Self::with_needs(|spacing| FrameNeeds { gregory: true, ..FrameNeeds::all(spacing) })
+    }
+
+    /// For patches of another scheme.
+    pub fn of_rival(rival: Rival) -> Self {
+        Self::with_needs(|spacing| FrameNeeds { gregory: true, rival: Some(rival), ..FrameNeeds::all(spacing) })
     }
 
     /// For displaced Gregory patches.

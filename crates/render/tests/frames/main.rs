@@ -11,6 +11,7 @@ mod lab;
 mod overflow;
 mod random;
 mod repeat;
+mod rivals;
 mod seen;
 mod twin;
 mod watertight;

@@ -12,10 +12,11 @@ use glam::{Affine3A, Quat, Vec3};
 use planish_render::lists::KIND_COUNT;
 use planish_render::{
     CapturedVertex, Culling, Density, DumpPasses, FrameCamera, FrameNeeds, FrameOptions, ObjectDesc, PatchKind,
-    Selection, Spacing, SurfaceDesc, SurfaceMethod,
+    Selection, Spacing, SurfaceDesc, SurfaceMethod, preprocess,
 };
 use planish_scene::displacement::{DisplacementLayout, DisplacementMap, DisplacementRequest, load_displacement};
 use planish_subdiv::ControlMesh;
+use planish_subdiv::gregory::Rival;
 use planish_subdiv::mesh::{EditOperation, INFINITE_SHARPNESS};
 use planish_subdiv::refine::CreasePatches;
 
@@ -241,8 +242,13 @@ struct Bench {
 
 impl Bench {
     fn new(lab: Lab, crease_patches: CreasePatches) -> Self {
-        let FrameNeeds { displaced, gregory, .. } = *lab.needs(Spacing::Equal);
-        let method = if gregory { SurfaceMethod::Gregory } else { SurfaceMethod::default() };
+        let FrameNeeds { displaced, gregory, rival, .. } = *lab.needs(Spacing::Equal);
+        let method = match rival {
+            Some(Rival::Acc) => SurfaceMethod::Acc,
+            Some(Rival::Pm) => SurfaceMethod::Pm,
+            None if gregory => SurfaceMethod::Gregory,
+            None => SurfaceMethod::default(),
+        };
         let desc = SurfaceDesc { method, crease_patches, displaced, ..SurfaceDesc::default() };
         Self {
             lab,
@@ -256,7 +262,12 @@ impl Bench {
     }
 
     fn is_gregory(&self) -> bool {
-        self.desc.method == SurfaceMethod::Gregory
+        self.desc.method.is_one_patch_a_face()
+    }
+
+    /// Whether the method has patches for a mesh.
+    fn can_draw(&self, mesh: &ControlMesh) -> bool {
+        preprocess(&[mesh], &SurfaceDesc { level: 0, ..self.desc }).is_ok()
     }
 
     fn world(&self, name: &str, meshes: Vec<ControlMesh>, objects: Vec<ObjectDesc>, random: &mut Random) -> World {
@@ -418,6 +429,32 @@ fn closed_meshes_are_closed_to_the_bit() {
 #[test]
 fn closed_meshes_of_gregory_patches_are_closed_to_the_bit() {
     check_all(Bench::new(Lab::gregory(), CreasePatches::default()));
+}
+
+#[test]
+fn closed_meshes_of_acc_and_pm_patches_are_closed_to_the_bit() {
+    for rival in [Rival::Acc, Rival::Pm] {
+        let mut bench = Bench::new(Lab::of_rival(rival), CreasePatches::default());
+        let mut meshes = closed_meshes();
+        meshes.retain(|(_, mesh)| bench.can_draw(mesh));
+        assert!(meshes.len() > 5 || !is_wanted(""), "{} closed meshes of quads", meshes.len());
+        for (name, mesh) in meshes {
+            let mut random = Random::named(&name);
+            if name == "cube" {
+                let mut uneven = mesh.clone();
+                uneven.density = vec![0.0; mesh.positions.len()];
+                dense_face(&mesh).iter().for_each(|&corner| uneven.density[corner as usize] = 1.0);
+                let mut world = bench.world(&name, vec![uneven], vec![ObjectDesc::identity(0)], &mut random);
+                bench.check(&mut world, &[Spacing::FractionalOdd], FINEST, &mut random);
+            }
+            let mut world = bench.world(&name, vec![mesh], vec![ObjectDesc::identity(0)], &mut random);
+            bench.check(&mut world, &SPACINGS, MODERATE, &mut random);
+        }
+        bench.finish();
+        for kind in [PatchKind::Gregory, PatchKind::GregoryCut] {
+            assert!(bench.entries[kind as usize] > 20 || !is_wanted(""), "{kind:?}: {:?}", bench.entries);
+        }
+    }
 }
 
 #[test]

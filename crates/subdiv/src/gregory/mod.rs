@@ -5,16 +5,25 @@
 //! the spokes at its ends, which both sides read; so both have the same bits. Here in f64, for tests and for measuring; the shaders are
 //! `glsl/shared/gregory.glsl`.
 
+mod acc;
 mod forms;
 mod part;
+mod pm;
 mod quad;
+mod rivals;
+mod rivals_surface;
 mod spokes;
 mod surface;
 mod triangle;
 
+pub use acc::AccPatch;
 pub(crate) use forms::{Composer, Form, SpokeForms, sum_forms};
 pub use part::part_points;
+pub use pm::PmPatch;
 pub use quad::{evaluate_quad, quad_points};
+pub use rivals::Rival;
+pub(crate) use rivals::{RivalSpoke, Terms, rival_spokes};
+pub use rivals_surface::{RivalPatch, RivalSurface};
 pub(crate) use spokes::{RowPlace, SectorSpokes, sector_of, sector_spokes};
 pub use surface::{GregoryPatch, GregorySurface};
 pub use triangle::{evaluate_triangle, part_barycentric, triangle_points};

@@ -2,12 +2,13 @@
 
 use std::f64::consts::PI;
 
+use super::rivals::{Terms, merged};
 use crate::limit::{LimitRule, limit_mask, limit_rule};
 use crate::rules::BoundaryTangent;
 use crate::topology::{Level, Sector};
 
 /// A third: a cubic's control points next to its ends are a third of its derivative away.
-const THIRD: f64 = 1.0 / 3.0;
+pub(super) const THIRD: f64 = 1.0 / 3.0;
 
 /// A spoke's weights.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +23,7 @@ pub(crate) struct SpokeWeights {
     /// The vertex at that end.
     pub end: u32,
     /// The vector r: vertices of the level with weights that sum to 0; that of the vertex itself is left out.
-    pub beside: Vec<(u32, f64)>,
+    pub beside: Terms,
 }
 
 /// The spokes of a sector, counter-clockwise.
@@ -91,13 +92,13 @@ fn end(level: &Level, sector: &Sector, j: usize) -> u32 {
 
 /// r of spoke j: 1/3 (m of the next spoke - m of the one before) + 2/3 (centre of the face after - of the face before), pointing to the
 /// face after; across a boundary points are reflected (section 4.6).
-fn beside(level: &Level, sector: &Sector, j: usize) -> Vec<(u32, f64)> {
+fn beside(level: &Level, sector: &Sector, j: usize) -> Terms {
     let vertex = level.origin(sector.spokes[0]);
     let n = sector.spokes.len();
-    let mut terms: Vec<(u32, f64)> = Vec::new();
+    let mut terms = Terms::new();
     // Of the middle of an edge from the vertex: what is not the vertex' own.
-    let middle = |j: usize, weight: f64, terms: &mut Vec<(u32, f64)>| terms.push((end(level, sector, j), 0.5 * weight));
-    let centre = |j: usize, weight: f64, terms: &mut Vec<(u32, f64)>| {
+    let middle = |j: usize, weight: f64, terms: &mut Terms| terms.push((end(level, sector, j), 0.5 * weight));
+    let centre = |j: usize, weight: f64, terms: &mut Terms| {
         let corners = level.vertices(level.face(sector.spokes[j]));
         terms.extend(corners.iter().map(|&v| (v, weight / corners.len() as f64)));
     };
@@ -119,16 +120,7 @@ fn beside(level: &Level, sector: &Sector, j: usize) -> Vec<(u32, f64)> {
         centre(j, 2.0 * THIRD, &mut terms);
         centre(j - 1, -2.0 * THIRD, &mut terms);
     }
-    terms.sort_by_key(|term| term.0);
-    let mut merged: Vec<(u32, f64)> = Vec::with_capacity(terms.len());
-    for (v, weight) in terms.into_iter().filter(|&(v, _)| v != vertex) {
-        match merged.last_mut() {
-            Some(last) if last.0 == v => last.1 += weight,
-            _ => merged.push((v, weight)),
-        }
-    }
-    merged.retain(|(_, weight)| weight.abs() > 1e-12);
-    merged
+    merged(terms, vertex)
 }
 
 /// A ring that lies in a plane as the limit's tangents do: its points in the order of a limit mask, and what its spokes' edge points
@@ -189,7 +181,7 @@ impl IdealRing {
 }
 
 /// The subdominant eigenvalue of a smooth vertex (section 3.3).
-fn smooth_value(n: usize) -> f64 {
+pub(super) fn smooth_value(n: usize) -> f64 {
     let step = 2.0 * PI / n as f64;
     (5.0 + step.cos() + (0.5 * step).cos() * (18.0 + 2.0 * step.cos()).sqrt()) / 16.0
 }

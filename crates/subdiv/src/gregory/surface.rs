@@ -186,7 +186,12 @@ fn spokes(tables: &Tables, points: &[Vec3], limits: &[[Vec3; 3]], is_projected: 
 }
 
 /// Three sums of a row, relative to its first point.
-fn weigh(points: &[Vec3], indices: &[u32], row: &StencilRow, weights: impl Fn(usize) -> [f64; 3]) -> [Vec3; 3] {
+pub(super) fn weigh(
+    points: &[Vec3],
+    indices: &[u32],
+    row: &StencilRow,
+    weights: impl Fn(usize) -> [f64; 3],
+) -> [Vec3; 3] {
     let origin = points[indices[row.first_index as usize] as usize];
     let mut sums = [[0.0; 3]; 3];
     for i in 1..row.count {

@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
-use crate::gregory::{Composer, RowPlace, SectorSpokes, sector_of, sector_spokes};
+use crate::gregory::{
+    Composer, Rival, RivalSpoke, RowPlace, SectorSpokes, Terms, rival_spokes, sector_of, sector_spokes,
+};
 use crate::limit::limit_mask;
 use crate::refine::{Refinement, child_half_edge};
 use crate::stencil::StencilRow;
@@ -26,6 +28,20 @@ pub struct Spoke {
     pub neighbours: [u32; 2],
     /// The row that makes the vector r: its first index is the origin that the others are taken from.
     pub row: StencilRow,
+}
+
+/// A spoke of one of the schemes beside Gregory patches ([`crate::gregory::Rival`]): rows over the cage's points. Their first index is
+/// the vertex, which the others are taken from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RivalSpokeRows {
+    /// From the limit position to the end of a third of the tangent along the edge.
+    pub edge: StencilRow,
+    /// Derivative across the edge.
+    pub across: StencilRow,
+    /// 3/2 of what lies between the inner points of both faces.
+    pub beside: StencilRow,
+    /// From the vertex to the middle of these.
+    pub middle: StencilRow,
 }
 
 /// What kind of patch an irregular face is drawn as.
@@ -139,6 +155,10 @@ pub struct GregoryTable {
     pub faces: Vec<GregoryFace>,
     /// Spokes.
     pub spokes: Vec<Spoke>,
+    /// Instead of them, of another scheme,
+    pub rival_spokes: Vec<RivalSpokeRows>,
+    /// this one.
+    pub rival: Option<Rival>,
     /// First spoke of each limit point, and how many it has.
     pub of_limit: Vec<[u32; 2]>,
     /// Of the rows of spokes: points.
@@ -178,7 +198,7 @@ impl<'a> GregoryBuilder<'a> {
         Self {
             refinement,
             first_points,
-            table: GregoryTable::default(),
+            table: GregoryTable { rival: refinement.options.rival, ..GregoryTable::default() },
             first_children,
             known: HashMap::new(),
             interned: HashMap::new(),
@@ -213,11 +233,8 @@ impl<'a> GregoryBuilder<'a> {
     }
 
     fn push(&mut self, face: GregoryFace) {
-        match &mut self.stencils {
-            // Edits change points between the levels.
-            Some(stencils) if !self.refinement.edits.is_empty() => stencils.push_of_spokes(1),
-            Some(stencils) => stencils.push_face(&face, &self.table.spokes),
-            None => {}
+        if let Some(stencils) = &mut self.stencils {
+            stencils.push_face(&face, &self.table.spokes);
         }
         self.table.faces.push(face);
     }
@@ -345,9 +362,16 @@ impl<'a> GregoryBuilder<'a> {
         let levels_finer = row_k as i32 - k as i32;
         let spokes =
             sector_spokes(level, corner, RowPlace { level: row_level, corner: row_corner, levels_finer, turn });
-        let first = self.table.spokes.len() as u32;
+        let first = self.table.spoke_count();
         let count = spokes.weights.len() as u32;
         let (vertex, first_point) = (level.origin(corner), self.first_points[k as usize]);
+        if let Some(rival) = self.table.rival {
+            for spoke in rival_spokes(level, &spokes.sector, rival) {
+                let rows = self.rival_rows(vertex, first_point, &spoke);
+                self.table.rival_spokes.push(rows);
+            }
+            return Known { first, spokes };
+        }
         for (j, spoke) in (0..).zip(&spokes.weights) {
             let row = self.row(vertex, first_point, &spoke.beside);
             let at = |j: u32| first + j % count;
@@ -369,6 +393,16 @@ impl<'a> GregoryBuilder<'a> {
             stencils.push_limit(&spokes, first_point + vertex, first_point, &points.zip(weights).collect::<Vec<_>>());
         }
         Known { first, spokes }
+    }
+
+    fn rival_rows(&mut self, vertex: u32, first_point: u32, spoke: &RivalSpoke) -> RivalSpokeRows {
+        let mut row = |terms: &Terms| self.row(vertex, first_point, terms);
+        RivalSpokeRows {
+            edge: row(&spoke.edge),
+            across: row(&spoke.across),
+            beside: row(&spoke.beside),
+            middle: row(&spoke.middle),
+        }
     }
 
     fn row(&mut self, vertex: u32, first_point: u32, terms: &[(u32, f64)]) -> StencilRow {
@@ -399,6 +433,11 @@ fn place_of(spokes: &SectorSpokes, corner: u32) -> u32 {
 }
 
 impl GregoryTable {
+    /// Number of spokes, of whichever scheme.
+    pub fn spoke_count(&self) -> u32 {
+        (self.spokes.len() + self.rival_spokes.len()) as u32
+    }
+
     /// Whether points of some patches are made of spokes, of all where there are no stencils.
     pub fn needs_spokes(&self) -> bool {
         let mut stencils = self.faces.iter().zip(&self.stencils.faces);
@@ -408,7 +447,8 @@ impl GregoryTable {
 
     /// Appends what belongs to limit points of another table, whose limit points, points and spokes follow those here.
     pub(super) fn append_spokes(&mut self, other: &Self, points: &[u32]) {
-        let first_spoke = self.spokes.len() as u32;
+        let first_spoke = self.spoke_count();
+        self.rival = self.rival.or(other.rival);
         let (first_index, first_weight) = (self.indices.len() as u32, self.weights.len() as u32);
         let moved = |spoke: u32| if spoke == NONE { NONE } else { spoke + first_spoke };
         self.spokes.extend(other.spokes.iter().map(|spoke| Spoke {
@@ -416,6 +456,12 @@ impl GregoryTable {
             neighbours: spoke.neighbours.map(moved),
             row: spoke.row.moved(first_index, first_weight),
             ..*spoke
+        }));
+        self.rival_spokes.extend(other.rival_spokes.iter().map(|spoke| RivalSpokeRows {
+            edge: spoke.edge.moved(first_index, first_weight),
+            across: spoke.across.moved(first_index, first_weight),
+            beside: spoke.beside.moved(first_index, first_weight),
+            middle: spoke.middle.moved(first_index, first_weight),
         }));
         self.of_limit.extend(other.of_limit.iter().map(|&[first, count]| [first + first_spoke, count]));
         self.indices.extend(other.indices.iter().map(|&point| points[point as usize]));

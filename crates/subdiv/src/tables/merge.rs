@@ -55,7 +55,7 @@ impl Tables {
             edges: 0..self.edge_count,
             stars: 0..self.stars.count(),
             limits: 0..self.limit_point_count(),
-            spokes: 0..self.gregory.spokes.len() as u32,
+            spokes: 0..self.gregory.spoke_count(),
             filling: 0..self.filling.len() as u32,
             edits: self.levels.iter().map(|level| level.edits.clone()).collect(),
         }
@@ -223,7 +223,7 @@ impl Tables {
         table.weights.extend(&part.limits.weights);
         let seats = part.limit_seats.iter();
         self.limit_seats.extend(seats.map(|seat| LimitSeat { canonical: seat.canonical + mesh.limits.start, ..*seat }));
-        mesh.spokes = following(self.gregory.spokes.len() as u32, part.gregory.spokes.len() as u32);
+        mesh.spokes = following(self.gregory.spoke_count(), part.gregory.spoke_count());
         self.gregory.append_spokes(&part.gregory, points);
         mesh.stars = following(self.stars.count(), part.stars.count());
         self.stars.append(&part.stars, |point| points[point as usize]);

@@ -25,7 +25,7 @@ use crate::stencil::{SharedWeights, StencilTable, has_large_faces};
 
 pub use crate::selection::PatchCounts;
 pub use face_varying::{FaceVaryingEvaluator, FaceVaryingPatch, FaceVaryingTable, TexTree};
-pub use gregory::{EdgeOwner, GregoryFace, GregoryKind, GregoryTable, Spoke};
+pub use gregory::{EdgeOwner, GregoryFace, GregoryKind, GregoryTable, RivalSpokeRows, Spoke};
 pub use gregory_stencils::{Connectivity, GregoryStencils, MAX_RING_POINTS, ROWS_PER_CORNER, StencilFace};
 pub use irregular::IrregularFace;
 pub use lists::IndexLists;

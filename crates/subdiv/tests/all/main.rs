@@ -5,6 +5,7 @@ mod edits;
 mod face_varying;
 mod gregory;
 mod merge;
+mod rivals;
 mod selection;
 mod surface;
 mod tables;
