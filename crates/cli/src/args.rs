@@ -484,7 +484,7 @@ mod tests {
     #[test]
     fn methods_and_schemes_to_come_are_refused_when_asked_for() {
         let message = render("--method table").surface.method().unwrap_err().to_string();
-        assert_eq!(message, "method table is not available yet (available: fas, dfas, gregory, uniform)");
+        assert_eq!(message, "method table is not available yet (available: fas, dfas, gregory, acc, pm, uniform)");
         let message = render("--scheme loop").surface.check_available().unwrap_err().to_string();
         assert_eq!(message, "scheme loop is not available yet (available: catmull-clark)");
         assert!(render("--scheme catmull-clark").surface.check_available().is_ok());
