@@ -1,5 +1,5 @@
 #version 460
-// variants: lean=LEAN layers=LAYERS colors=LAYERS,COLORS dump=DUMP
+// variants: lean=LEAN layers=LAYERS colors=LAYERS,COLORS dump=DUMP lean_maps=LEAN,MAPS layers_maps=LAYERS,MAPS colors_maps=LAYERS,COLORS,MAPS dump_maps=DUMP,MAPS
 // Gregory patches: quads of 20 points and triangles of 15, in their Bezier form (Loop et al. 2009, sections 3.1 and 4.4). A triangle
 // is drawn as three quads, the Ptex faces of its corners.
 #extension GL_GOOGLE_include_directive : require
@@ -30,9 +30,13 @@ layout(location = 10) in vec3 curve_across[];
 #include "shared/domain.glsl"
 #include "shared/border.glsl"
 #include "shared/gregory_seams.glsl"
+#if defined(MAPS)
 #include "shared/gregory_displacement.glsl"
+#endif
 #include "shared/gregory_triangle.glsl"
+#if defined(COLORS) || defined(DUMP)
 #include "shared/gregory_colors.glsl"
+#endif
 
 Evaluated evaluate_quad(Parameter u, Parameter v)
 {
@@ -185,29 +189,33 @@ void main()
         }
     }
     vec3 shading_normal = normal;
-    if (DISPLACED) {
-        vec3 along_u = 3.0 * point.along_u;
-        vec3 along_v = 3.0 * point.along_v;
-        if (TRIANGLE) {
-            along_u = point.along_u;
-            along_v = point.along_v;
-            tangents_of_part(gregory_part(push.frame.v.scene.v.gregory.v[patch_places.x]), u, v, along_u, along_v);
-        }
-        uint first_face = push.frame.v.scene.v.objects.v[patch_places.y].first_face;
-        is_on = bvec4(WATERTIGHT && is_on.x, WATERTIGHT && is_on.y, WATERTIGHT && is_on.z, WATERTIGHT && is_on.w);
-        shading_normal = displace(is_on, seam, u, v, info.ptex_face - first_face, along_u, along_v, border_normal, position, normal);
+#if defined(MAPS)
+    vec3 along_u = 3.0 * point.along_u;
+    vec3 along_v = 3.0 * point.along_v;
+    if (TRIANGLE) {
+        along_u = point.along_u;
+        along_v = point.along_v;
+        tangents_of_part(gregory_part(push.frame.v.scene.v.gregory.v[patch_places.x]), u, v, along_u, along_v);
     }
+    uint first_face = push.frame.v.scene.v.objects.v[patch_places.y].first_face;
+    is_on = bvec4(WATERTIGHT && is_on.x, WATERTIGHT && is_on.y, WATERTIGHT && is_on.z, WATERTIGHT && is_on.w);
+    shading_normal = displace(is_on, seam, u, v, info.ptex_face - first_face, along_u, along_v, border_normal, position, normal);
+#endif
     vec2 st = vec2(0.0);
+#if defined(DUMP)
     if (TEX_COORDS) {
         SceneTables scene = push.frame.v.scene;
         Object object = scene.v.objects.v[patch_places.y];
         st = tree_tex_coord(scene, object, info.ptex_face - object.first_face, ptex_uv(info, vec2(u.t, v.t)));
     }
+#endif
     // A triangle is a patch of the level that its face is of; its thirds have the factors of the next.
     info.flags -= TRIANGLE ? 1u << 5 : 0u;
     put_surface_point(position, normal, shading_normal, vec2(u.t, v.t), st, info, patch_words.w,
                       TRIANGLE ? KIND_GREGORY_TRIANGLE : KIND_GREGORY_QUAD, shown_factor());
+#if defined(COLORS) || defined(DUMP)
     if (COLORED) {
         put_color(point_color(u, v, info));
     }
+#endif
 }

@@ -52,14 +52,21 @@ pub(crate) struct PipelineOptions {
     pub colors: bool,
 }
 
-/// The pipeline of each kind of patch that the method has.
+/// The pipeline of each kind of patch that the method has: each on a thread of its own, as drivers compile on the caller's.
 pub(crate) fn pipelines(
     device: &Device,
     options: &PipelineOptions,
 ) -> Result<Vec<(PatchKind, GraphicsPipeline)>, Error> {
     let kinds =
         PatchKind::of_method(options.method, options.end_cap).iter().filter(|kind| options.cuts || !kind.is_cut());
-    kinds.map(|&kind| Ok((kind, pipeline(device, options, kind)?))).collect()
+    std::thread::scope(|scope| {
+        let made: Vec<_> = kinds.map(|&kind| (kind, scope.spawn(move || pipeline(device, options, kind)))).collect();
+        let joined = made.into_iter().map(|(kind, thread)| {
+            let pipeline = thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            Ok((kind, pipeline?))
+        });
+        joined.collect()
+    })
 }
 
 fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Result<GraphicsPipeline, Error> {
@@ -157,21 +164,39 @@ fn geometry_stages(options: &PipelineOptions, kind: PatchKind) -> Vec<&'static S
         if let Some(rival) = options.method.rival() {
             return rival_stages(list, rival, pick);
         }
-        let evaluation = pick(
-            &shaders::gregory_patch_lean_tese::PROGRAM,
-            &shaders::gregory_patch_layers_tese::PROGRAM,
-            &shaders::gregory_patch_colors_tese::PROGRAM,
-            &shaders::gregory_patch_dump_tese::PROGRAM,
-        );
+        let evaluation = if options.displaced {
+            pick(
+                &shaders::gregory_patch_lean_maps_tese::PROGRAM,
+                &shaders::gregory_patch_layers_maps_tese::PROGRAM,
+                &shaders::gregory_patch_colors_maps_tese::PROGRAM,
+                &shaders::gregory_patch_dump_maps_tese::PROGRAM,
+            )
+        } else {
+            pick(
+                &shaders::gregory_patch_lean_tese::PROGRAM,
+                &shaders::gregory_patch_layers_tese::PROGRAM,
+                &shaders::gregory_patch_colors_tese::PROGRAM,
+                &shaders::gregory_patch_dump_tese::PROGRAM,
+            )
+        };
         return vec![list, &shaders::gregory_patch_tesc::PROGRAM, evaluation];
     }
     if kind != PatchKind::Filling {
-        let evaluation = pick(
-            &shaders::bspline_patch_lean_tese::PROGRAM,
-            &shaders::bspline_patch_layers_tese::PROGRAM,
-            &shaders::bspline_patch_colors_tese::PROGRAM,
-            &shaders::bspline_patch_dump_tese::PROGRAM,
-        );
+        let evaluation = if options.displaced {
+            pick(
+                &shaders::bspline_patch_lean_maps_tese::PROGRAM,
+                &shaders::bspline_patch_layers_maps_tese::PROGRAM,
+                &shaders::bspline_patch_colors_maps_tese::PROGRAM,
+                &shaders::bspline_patch_dump_maps_tese::PROGRAM,
+            )
+        } else {
+            pick(
+                &shaders::bspline_patch_lean_tese::PROGRAM,
+                &shaders::bspline_patch_layers_tese::PROGRAM,
+                &shaders::bspline_patch_colors_tese::PROGRAM,
+                &shaders::bspline_patch_dump_tese::PROGRAM,
+            )
+        };
         return vec![list, &shaders::bspline_patch_tesc::PROGRAM, evaluation];
     }
     let evaluation = pick(

@@ -4,15 +4,13 @@
 use planish_shaders::precise::no_contraction_report;
 use planish_shaders::{self as shaders, ShaderModule};
 
-/// Functions whose arithmetic decides shared positions and normals, by module.
-const EVALUATION: [&str; 27] = [
+/// Functions whose arithmetic decides shared positions and normals.
+const EVALUATION: [&str; 14] = [
     "cubic_basis",
     "crease_basis",
     "weigh",
-    "weigh_patch",
     "weigh_patch_and_tangents",
     "over_36",
-    "patch_position",
     "curve_position",
     "without_sign_of_zero",
     "border_point",
@@ -22,6 +20,10 @@ const EVALUATION: [&str; 27] = [
     "precise_cross",
     "scaled",
     "unit_vector",
+];
+/// And where they are displaced to.
+const DISPLACEMENT: [&str; 12] = [
+    "weigh_patch",
     "place",
     "between_corners",
     "ptex_place",
@@ -34,15 +36,28 @@ const EVALUATION: [&str; 27] = [
     "displaced",
     "linear",
 ];
-const WATERTIGHT: [(&ShaderModule, &[&str]); 5] = [
+/// Of the patches that are no bicubic ones.
+const EDGES: [&str; 7] =
+    ["weigh_ends", "edge_normal", "bernstein", "without_sign_of_zero", "border_point", "over_36", "curve_position"];
+const WATERTIGHT: [(&ShaderModule, &[&str]); 15] = [
     (&shaders::bspline_patch_lean_tese::PROGRAM, &EVALUATION),
     (&shaders::bspline_patch_layers_tese::PROGRAM, &EVALUATION),
     (&shaders::bspline_patch_dump_tese::PROGRAM, &EVALUATION),
+    (&shaders::bspline_patch_lean_maps_tese::PROGRAM, &EVALUATION),
+    (&shaders::bspline_patch_lean_maps_tese::PROGRAM, &DISPLACEMENT),
+    (&shaders::bspline_patch_layers_maps_tese::PROGRAM, &DISPLACEMENT),
+    (&shaders::bspline_patch_dump_maps_tese::PROGRAM, &DISPLACEMENT),
     (&shaders::bspline_patch_tesc::PROGRAM, &["reflected_point", "to_world"]),
     (
         &shaders::filling_quad_tesc::PROGRAM,
         &["to_world", "normal_to_world", "unit_vector", "mix_texels", "displacement_vector", "displaced", "linear"],
     ),
+    (&shaders::gregory_patch_lean_tese::PROGRAM, &EDGES),
+    (&shaders::gregory_patch_lean_maps_tese::PROGRAM, &EDGES),
+    (&shaders::acc_patch_lean_tese::PROGRAM, &EDGES),
+    (&shaders::pm_patch_lean_tese::PROGRAM, &EDGES),
+    (&shaders::acc_patch_tesc::PROGRAM, &["tangent", "scaled_by", "to_world_vector"]),
+    (&shaders::pm_patch_tesc::PROGRAM, &["scaled_by", "to_world", "to_world_vector"]),
 ];
 
 #[test]
@@ -94,7 +109,9 @@ fn frames_are_selected_and_culled_by_arithmetic_without_contraction() {
 
 #[test]
 fn point_kernels_are_computed_without_contraction() {
-    for module in [&shaders::subdivide_comp::PROGRAM, &shaders::limit_comp::PROGRAM] {
+    for module in
+        [&shaders::subdivide_comp::PROGRAM, &shaders::limit_comp::PROGRAM, &shaders::rival_spokes_comp::PROGRAM]
+    {
         let report = no_contraction_report(module.spirv).expect("valid SPIR-V");
         let main = report.iter().find(|f| f.base_name() == "main").expect("an entry point");
         assert!(main.no_contraction > 0);
