@@ -1,5 +1,7 @@
 //! Deviations from the nearest points, as Metro samples them (Cignoni, Rocchini and Scopigno 1998).
 
+use std::collections::HashSet;
+
 use super::deviation::{Deviation, Place, Summary, Tally};
 use super::soup::{Soup, SurfacePoint, Triangle};
 use super::threads::map_on_all_cores;
@@ -12,17 +14,29 @@ fn deviation(point: &SurfacePoint, tree: &Tree<'_>) -> Option<Deviation> {
     Some(Deviation { distance: nearest.distance_squared.sqrt(), angle })
 }
 
-/// Samples one surface by area and looks for the nearest points of the other.
+/// Samples one surface by area and looks for the nearest points of the other. Vertices count for the maxima alone: of a spike an equal
+/// share of the area may have no sample.
 pub fn compare(from: &Soup, to: &Tree<'_>, sample_count: u32) -> Summary {
-    let samples = samples(from, sample_count);
-    let deviations = map_on_all_cores(&samples, |&(triangle, weights)| deviation(&triangle.at(weights), to));
     let mut tally = Tally::default();
-    for (&(triangle, weights), deviation) in samples.iter().zip(deviations) {
-        if let Some(deviation) = deviation {
-            tally.add(1.0, deviation, Place::new(triangle.face, triangle.at(weights).uv));
+    for (weight, samples) in [(1.0, samples(from, sample_count)), (0.0, vertices(from))] {
+        let deviations = map_on_all_cores(&samples, |&(triangle, weights)| deviation(&triangle.at(weights), to));
+        for (&(triangle, weights), deviation) in samples.iter().zip(deviations) {
+            if let Some(deviation) = deviation {
+                tally.add(weight, deviation, Place::new(triangle.face, triangle.at(weights).uv));
+            }
         }
     }
     tally.summary()
+}
+
+/// Every vertex once, as a corner of a triangle.
+fn vertices(soup: &Soup) -> Vec<(&Triangle, [f64; 3])> {
+    const CORNERS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let mut known = HashSet::new();
+    let corners = soup.triangles.iter().flat_map(|triangle| CORNERS.map(|weights| (triangle, weights)));
+    corners
+        .filter(|(triangle, weights)| known.insert(triangle.at(*weights).position.to_array().map(f64::to_bits)))
+        .collect()
 }
 
 /// Of every corner, for a picture.

@@ -68,6 +68,18 @@ fn a_copy_beside_a_square_has_the_distance_that_it_was_moved() {
 }
 
 #[test]
+fn a_spike_between_the_samples_is_the_maximum_and_changes_no_mean() {
+    let spiked = surface(0, 200, |uv| {
+        let is_middle = (uv - Vec2::splat(0.5)).length() < 1e-4;
+        (uv.extend(if is_middle { 0.25 } else { 0.0 }), Vec3::Z)
+    });
+    let flat = square(200, Vec3::ZERO);
+    let found = nearest::compare(&spiked, &Tree::new(&flat.triangles), 5);
+    assert_near(found.distance.max, 0.25, 1e-7);
+    assert!(found.distance.rms < 1e-12, "five samples miss it: {found:?}");
+}
+
+#[test]
 fn spheres_deviate_by_the_difference_of_their_radii() {
     let (a, b) = (sphere(96, 1.25), sphere(128, 1.0));
     // What a chord of the coarser sphere lies below it, and of the denser in the other direction.
