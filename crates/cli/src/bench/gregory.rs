@@ -8,7 +8,7 @@ use planish_subdiv::refine::CreasePatches;
 use planish_subdiv::tables::{GregoryKind, Tables};
 use serde::Serialize;
 
-use super::measure::{Measured, Setting, measure};
+use super::measure::{Measured, Setting, Timed};
 use super::{Bench, Row};
 use crate::cage::Cage;
 use crate::text_table::milliseconds_text;
@@ -58,8 +58,8 @@ pub fn run(bench: &Bench, device: &Device, cage: &Cage) -> Result<Vec<GregoryRow
                 watertight: !bench.arguments.no_watertight,
                 gregory_points,
             };
-            match measure(bench, device, cage, setting) {
-                Ok(measured) => of_factor.push((name, method, measured)),
+            match Timed::new(bench, device, cage, setting) {
+                Ok(timed) => of_factor.push((name, method, timed)),
                 // The paper's rivals are for closed meshes of quads.
                 Err(error) if method.rival().is_some() && is_no_cage_of_rivals(&error) => {
                     bench.console.explain(format_args!("{error:#}: left out"));
@@ -67,6 +67,12 @@ pub fn run(bench: &Bench, device: &Device, cage: &Cage) -> Result<Vec<GregoryRow
                 Err(error) => return Err(error),
             }
         }
+        for round in 1..=bench.arguments.repeat {
+            bench.console.progress(format_args!("{}: tess factor {tess}, frame {round}", cage.path().display()));
+            of_factor.iter_mut().try_for_each(|(_, _, timed)| timed.draw())?;
+        }
+        let of_factor: Vec<_> =
+            of_factor.into_iter().map(|(name, method, timed)| (name, method, timed.measured())).collect();
         let (wall_ms, draw_ms) = (of_factor[TWO_STAGE].2.wall_ms, of_factor[TWO_STAGE].2.gpu_ms.draw);
         rows.extend(of_factor.into_iter().map(|(name, method, measured)| GregoryRow {
             tess,

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::gregory::fetched_points;
 use super::{Bench, median};
 use crate::cage::Cage;
-use crate::offline::{Plan, Session, frame_camera, frame_needs, frame_options};
+use crate::offline::{Images, Plan, Session, frame_camera, frame_needs, frame_options};
 use crate::stats::{FrameStats, GpuStats, PatchStats};
 
 /// A method's frames at one setting.
@@ -64,55 +64,83 @@ impl Measured {
 
 /// Draws and times a scene in its default view.
 pub fn measure(bench: &Bench, device: &Device, cage: &Cage, setting: Setting) -> Result<Measured> {
-    let arguments = bench.arguments;
-    let camera = cage.default_view()?;
-    let Setting { method, level, tess_factor, crease_patches, watertight, gregory_points } = setting;
-    let objects = cage.objects(&camera);
-    let mut plan = Plan {
-        frame_camera: frame_camera(&camera, arguments.size),
-        needs: FrameNeeds {
-            watertight,
-            displaced: cage.is_displaced(),
-            gregory: method.is_one_patch_a_face(),
-            rival: method.rival(),
-            filling: !method.is_one_patch_a_face(),
-            gregory_points,
-            ..frame_needs(arguments.spacing.into(), tess_factor, &objects)
-        },
-        objects,
-        camera,
-        desc: SurfaceDesc {
-            method,
-            level,
-            crease_patches,
-            end_cap: EndCap::Quad,
-            displaced: cage.is_displaced(),
-            gregory_points,
-        },
-        options: frame_options(method, Density::Tess(tess_factor), false),
-    };
-    plan.cull(arguments.no_cull);
-    let mut session = Session::new(device, cage, &plan, bench.console)?;
-    let images = session.images(View::Shaded, Layers::None)?;
-    let mut cage_motion = CageMotion::new(cage);
-    let camera = session.camera;
-    session.draw(&images, &camera, &cage_motion.positions(0))?;
-    let mut frames = Vec::new();
-    let mut tessellation = TessellationRuns::default();
-    for frame in 1..=arguments.repeat as i32 {
-        let cages = cage_motion.positions(frame);
-        let drawn = session.draw(&images, &camera, &cages)?;
-        frames.push(FrameStats::drawn(frame, &session, &drawn));
-        tessellation = TessellationRuns::new(&drawn.report);
+    let mut timed = Timed::new(bench, device, cage, setting)?;
+    for _ in 0..bench.arguments.repeat {
+        timed.draw()?;
     }
-    let (surface, times) = (&session.surface, session.surface.times());
-    Ok(Measured {
-        table_bytes: surface.memory().tables,
-        preprocess_ms: times.topology + times.tables,
-        tessellation,
-        gregory_fetched_points: fetched_points(surface.tables()),
-        ..medians(surface.tables().last_level, &frames)
-    })
+    Ok(timed.measured())
+}
+
+/// A method at one setting, frame by frame: so that those of several can be drawn in turns, and a machine that is busy for a while is
+/// so for all of them.
+pub struct Timed<'a> {
+    session: Session,
+    images: Images,
+    cage_motion: CageMotion<'a>,
+    frames: Vec<FrameStats>,
+    tessellation: TessellationRuns,
+}
+
+impl<'a> Timed<'a> {
+    /// Draws one frame, which does not count.
+    pub fn new(bench: &Bench, device: &Device, cage: &'a Cage, setting: Setting) -> Result<Self> {
+        let arguments = bench.arguments;
+        let camera = cage.default_view()?;
+        let Setting { method, level, tess_factor, crease_patches, watertight, gregory_points } = setting;
+        let objects = cage.objects(&camera);
+        let mut plan = Plan {
+            frame_camera: frame_camera(&camera, arguments.size),
+            needs: FrameNeeds {
+                watertight,
+                displaced: cage.is_displaced(),
+                gregory: method.is_one_patch_a_face(),
+                rival: method.rival(),
+                filling: !method.is_one_patch_a_face(),
+                gregory_points,
+                ..frame_needs(arguments.spacing.into(), tess_factor, &objects)
+            },
+            objects,
+            camera,
+            desc: SurfaceDesc {
+                method,
+                level,
+                crease_patches,
+                end_cap: EndCap::Quad,
+                displaced: cage.is_displaced(),
+                gregory_points,
+            },
+            options: frame_options(method, Density::Tess(tess_factor), false),
+        };
+        plan.cull(arguments.no_cull);
+        let mut session = Session::new(device, cage, &plan, bench.console)?;
+        let images = session.images(View::Shaded, Layers::None)?;
+        let mut cage_motion = CageMotion::new(cage);
+        let camera = session.camera;
+        session.draw(&images, &camera, &cage_motion.positions(0))?;
+        Ok(Self { session, images, cage_motion, frames: Vec::new(), tessellation: TessellationRuns::default() })
+    }
+
+    /// Draws and times the next frame.
+    pub fn draw(&mut self) -> Result<()> {
+        let frame = self.frames.len() as i32 + 1;
+        let (camera, cages) = (self.session.camera, self.cage_motion.positions(frame));
+        let drawn = self.session.draw(&self.images, &camera, &cages)?;
+        self.frames.push(FrameStats::drawn(frame, &self.session, &drawn));
+        self.tessellation = TessellationRuns::new(&drawn.report);
+        Ok(())
+    }
+
+    /// What was measured.
+    pub fn measured(&self) -> Measured {
+        let (surface, times) = (&self.session.surface, self.session.surface.times());
+        Measured {
+            table_bytes: surface.memory().tables,
+            preprocess_ms: times.topology + times.tables,
+            tessellation: self.tessellation,
+            gregory_fetched_points: fetched_points(surface.tables()),
+            ..medians(surface.tables().last_level, &self.frames)
+        }
+    }
 }
 
 /// What is drawn.
