@@ -22,11 +22,6 @@ layout(push_constant, scalar) uniform EmitPush {
 
 #include "shared/draw_lists.glsl"
 
-#if defined(GREGORY_PATCHES) || defined(GREGORY_CUT)
-#include "shared/gregory.glsl"
-#include "shared/stencil.glsl"
-#endif
-
 #if defined(LEAVES) || defined(GREGORY_PATCHES) || defined(GREGORY_CUT)
 uint split_edges_of(Object object, uint place)
 {
@@ -39,50 +34,7 @@ uint split_edges_of(Object object, uint place)
 #endif
 
 #if defined(LEAVES)
-// Whether nothing can be seen of the triangles of a quad, of which 8 points are given: corners, and the middles of split edges.
-bool is_unseen(vec3 p[8], uint split_edges, FrameInput frame, Object object)
-{
-    EmitView view = frame.view;
-    float largest_offset = 0.0;
-    float largest = 0.0;
-    [[unroll]] for (int i = 0; i < 8; ++i) {
-        precise vec3 offset = p[i] - view.eye;
-        largest_offset = max(largest_offset, largest_component(offset));
-        largest = max(largest, largest_component(p[i]));
-    }
-    Scale scale = scale_of(view, 1.0, largest_offset, largest);
-    precise float margin = object.displacement * scale.factor;
-    uint planes = 31u;
-    [[unroll]] for (int i = 0; i < 8; ++i) {
-        precise vec3 offset = p[i] * scale.factor - scale.eye;
-        p[i] = offset;
-        planes &= outside_planes(offset, view, scale, margin);
-    }
-    precise float error = scale.rounding + CUBE_DIAGONAL * view.snap;
-    if (!culls_back(frame, object) || object.displacement != 0.0) {
-        return planes != 0u;
-    }
-    if (split_edges == 0u) {
-        return planes != 0u || is_quad_turned(p[0], p[1], p[2], p[3], error, scale.eye_rounding);
-    }
-    // The fan's triangles. Middles that are not there lie at a corner: their triangles have no area, and show neither side.
-    uint fan = uint(findLSB(split_edges));
-    bool is_turned = true;
-    for (uint i = 0; i < 4; ++i) {
-        uint next = (i + 1u) & 3u;
-        bool is_there = (split_edges >> i & 1u) != 0u;
-        if (i == fan) {
-            continue;
-        }
-        if (is_there) {
-            is_turned = is_turned && is_triangle_turned(p[4u + fan], p[i], p[4u + i], error, scale.eye_rounding)
-                && is_triangle_turned(p[4u + fan], p[4u + i], p[next], error, scale.eye_rounding);
-        } else {
-            is_turned = is_turned && is_triangle_turned(p[4u + fan], p[i], p[next], error, scale.eye_rounding);
-        }
-    }
-    return planes != 0u || is_turned;
-}
+#include "shared/quad_visibility.glsl"
 
 shared uint level_counts[LEVEL_COUNT];
 
@@ -111,7 +63,7 @@ void main()
             uint middle = (split_edges >> i & 1u) != 0u ? push.scene.v.irregular.v[item.place].midpoints[i] : corner;
             points[4u + i] = to_world(object, push.scene.v.limits.v[middle].position);
         }
-        is_seen = !is_culled(frame) || !is_unseen(points, split_edges, frame, object);
+        is_seen = !is_culled(frame) || !is_quad_unseen(points, split_edges, frame.view, culls_back(frame, object), object.displacement);
         // The inner level of an uneven quad is 2: its middle makes a triangle with each segment of its edges.
         uint triangles = split_edges == 0u ? 2u : 4u + bitCount(split_edges);
         entry = DrawEntry(item.place, item.object, entry_flags(split_edges, 0u, uvec2(0u)), triangles, vec4(0.0), vec4(0.0), vec2(0.0));
@@ -286,7 +238,7 @@ void main()
             vec2 high;
             piece_bounds(factors, own, pieces, piece, low, high);
             bezier_part(bezier, low, high);
-            is_seen = !is_patch_unseen(bezier, frame.view, Grain(1.0, 0.0, false), false, object.displacement);
+            is_seen = !is_patch_unseen(bezier, frame.view, Grain(1.0, 0.0, 0.0, false), false, object.displacement);
         }
         DrawEntry entry = DrawEntry(item.place, item.object, entry_flags(split_edges, pieces, piece),
                                     triangle_count(own.counts, own.inner), factors.low, factors.high, factors.inner);
@@ -296,155 +248,5 @@ void main()
 #endif
 
 #if defined(GREGORY_PATCHES) || defined(GREGORY_CUT)
-// The control points of a patch by its stencil: the ring is gone over once.
-void stencil_points(GregoryFace face, uint place, uint corners, out vec3 p[20])
-{
-    GregoryStencil stencil = push.scene.v.stencils.v[place];
-    vec3 origins[4];
-    [[unroll]] for (uint i = 0u; i < 4u; ++i) {
-        uint corner = i < corners ? i : 0u;
-        origins[i] = push.scene.v.points.v[stencil.corners[corner]];
-        p[5u * i] = push.scene.v.limits.v[face.limits[corner]].position;
-        [[unroll]] for (uint which = 1u; which < 5u; ++which) {
-            p[5u * i + which] = i < corners ? origins[i] : p[0];
-        }
-    }
-    for (uint k = 0u; k < stencil.point_count; ++k) {
-        uvec2 entry = push.scene.v.stencil_points.v[stencil.first_point + k];
-        uint column = stencil.first_weight + entry.y * 8u * corners;
-        vec3 point = push.scene.v.points.v[entry.x];
-        [[unroll]] for (uint row = 0u; row < 16u; ++row) {
-            float weight = row < 4u * corners ? push.scene.v.stencil_weights.v[column + min(row, 4u * corners - 1u)] : 0.0;
-            p[5u * (row / 4u) + row % 4u + 1u] += weight * (point - origins[row / 4u]);
-        }
-    }
-}
-
-// Whether a Gregory patch lies outside of the view: it lies in the convex hull of its control points.
-bool is_outside(Object object, GregoryFace face, uint face_place, FrameInput frame)
-{
-    EmitView view = frame.view;
-    uint kind = gregory_kind(face);
-    uint count = kind == GREGORY_TRIANGLE ? 15u : 20u;
-    vec3 p[20];
-    float largest_offset = 0.0;
-    float largest = 0.0;
-    bool is_stencil = has_stencil(push.scene, face_place);
-    if (STENCIL) {
-        for (bool is_open = is_stencil; is_open; is_open = false) {
-            stencil_points(face, face_place, kind == GREGORY_TRIANGLE ? 3u : 4u, p);
-        }
-    }
-    [[dont_unroll]] for (uint i = 0u; i < 20u; ++i) {
-        // A triangle has its first point again.
-        uint place = i < count ? i : 0u;
-        vec3 point = p[i];
-        for (bool is_open = kind == GREGORY_NGON; is_open; is_open = false) {
-            point = ngon_point(push.scene, face, place);
-        }
-        for (bool is_open = !is_stencil && kind != GREGORY_NGON; is_open; is_open = false) {
-            point = corner_point(push.scene, face, place, kind == GREGORY_TRIANGLE ? 3u : 4u);
-        }
-        p[i] = to_world(object, point);
-        precise vec3 offset = p[i] - view.eye;
-        largest_offset = max(largest_offset, largest_component(offset));
-        largest = max(largest, largest_component(p[i]));
-    }
-    Scale scale = scale_of(view, 1.0, largest_offset, largest);
-    precise float margin = object.displacement * scale.factor;
-    uint planes = 31u;
-    [[dont_unroll]] for (uint i = 0u; i < 20u; ++i) {
-        precise vec3 offset = p[i] * scale.factor - scale.eye;
-        planes &= outside_planes(offset, view, scale, margin);
-    }
-    return planes != 0u;
-}
-#endif
-
-#if defined(GREGORY_PATCHES)
-void main()
-{
-    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    for (uint i = gl_LocalInvocationID.x; i < 2u * LEVEL_COUNT; i += CHUNK) {
-        level_counts[i] = 0u;
-    }
-    if (gl_LocalInvocationID.x == 0u) {
-        cut_patch_count = 0u;
-    }
-    barrier();
-    uint thread = group * CHUNK + gl_LocalInvocationID.x;
-    bool is_seen = thread < list_length(push.scene.v.heads, LIST_LEAVES);
-    if (is_seen) {
-        is_seen = gregory_kind(push.scene.v.gregory.v[push.scene.v.leaf_items.v[thread].place].flags) != GREGORY_NONE;
-    }
-    ListItem item = ListItem(0u, 0u);
-    uint pieces = 0u;
-    uint vertices = 1u;
-    uint cut_place = 0u;
-    bool is_triangle = false;
-    DrawEntry entry;
-    if (is_seen) {
-        item = push.scene.v.leaf_items.v[thread];
-        Object object = push.scene.v.objects.v[item.object];
-        FrameInput frame = push.scene.v.frame_input.v;
-        PatchInfo info = push.scene.v.irregular.v[item.place].info;
-        GregoryFace face = push.scene.v.gregory.v[item.place];
-        is_triangle = gregory_kind(face) == GREGORY_TRIANGLE;
-        uint split_edges = split_edges_of(object, item.place);
-        PatchFactors factors = patch_factors(face_density(push.scene, object, info.ptex_face), info, split_edges);
-        pieces = cut_count(factors);
-        is_seen = !is_culled(frame) || !is_outside(object, face, item.place, frame);
-        uvec2 inner = uvec2(factors.inner_counts);
-        vertices = (inner.x + 1u) * (inner.y + 1u);
-        entry = DrawEntry(item.place, item.object, entry_flags(split_edges, 0u, uvec2(0u)),
-                          triangle_count(uvec4(factors.counts), inner), factors.low, factors.high, factors.inner);
-        // A triangle is one patch: its first third is counted.
-        if (is_seen && (!is_triangle || gregory_part(face) == 0u)) {
-            atomicAdd(level_counts[patch_level(info) + (is_triangle ? LEVEL_COUNT - 1u : 0u)], 1u);
-        }
-        if (is_seen && pieces > 1u) {
-            cut_place = atomicAdd(cut_patch_count, 1u);
-        }
-    }
-    append_entries(DRAW_GREGORY, is_seen && pieces == 1u && !is_triangle, entry, vertices);
-    append_entries(DRAW_TRIANGLE, is_seen && pieces == 1u && is_triangle, entry, vertices);
-    uint cut = append_cut(LIST_CUT_GREGORY, is_seen && pieces > 1u, cut_place);
-    if (cut != NONE) {
-        push.scene.v.cut_gregory_items.v[cut] = item;
-    }
-    for (uint i = gl_LocalInvocationID.x; i < LEVEL_COUNT; i += CHUNK) {
-        if (level_counts[i] != 0u) {
-            atomicAdd(push.scene.v.counts.v.gregory[i], level_counts[i]);
-        }
-        if (level_counts[LEVEL_COUNT + i] != 0u) {
-            atomicAdd(push.scene.v.counts.v.triangle[i], level_counts[LEVEL_COUNT + i]);
-        }
-    }
-}
-#endif
-
-#if defined(GREGORY_CUT)
-void main()
-{
-    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    if (group >= list_length(push.scene.v.heads, LIST_CUT_GREGORY)) {
-        return;
-    }
-    ListItem item = push.scene.v.cut_gregory_items.v[group];
-    Object object = push.scene.v.objects.v[item.object];
-    PatchInfo info = push.scene.v.irregular.v[item.place].info;
-    bool is_triangle = gregory_kind(push.scene.v.gregory.v[item.place]) == GREGORY_TRIANGLE;
-    uint split_edges = split_edges_of(object, item.place);
-    PatchFactors factors = patch_factors(face_density(push.scene, object, info.ptex_face), info, split_edges);
-    uint pieces = cut_count(factors);
-    for (uint first = 0u; first < pieces * pieces; first += CHUNK) {
-        uint i = first + gl_LocalInvocationID.x;
-        uvec2 piece = uvec2(i % pieces, i / pieces);
-        PieceFactors own = piece_factors(factors, pieces, piece);
-        DrawEntry entry = DrawEntry(item.place, item.object, entry_flags(split_edges, pieces, piece),
-                                    triangle_count(own.counts, own.inner), factors.low, factors.high, factors.inner);
-        append_entries(is_triangle ? DRAW_TRIANGLE_CUT : DRAW_GREGORY_CUT, i < pieces * pieces, entry,
-                       (own.inner.x + 1u) * (own.inner.y + 1u));
-    }
-}
+#include "shared/emit_gregory.glsl"
 #endif

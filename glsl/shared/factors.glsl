@@ -168,6 +168,7 @@ Grain grain_of(PatchFactors factors)
     if (!result.is_uneven) {
         precise float grain = 1.0 / shortest;
         result.grain = grain;
+        result.reach = 0.0;
         result.skew = 0.0;
         return result;
     }
@@ -185,6 +186,7 @@ Grain grain_of(PatchFactors factors)
     precise float grain = reach / (shortest * depth);
     precise float skew = product / (2.0 * depth);
     result.grain = grain;
+    result.reach = sqrt(product);
     result.skew = skew;
     return result;
 }

@@ -33,9 +33,19 @@ struct EmitView {
 struct Grain {
     float grain;    // 1 over the shortest side of a triangle; of an uneven patch, one with an edge that has other points than the
                     // row beside it, at least 1 over a triangle's area times the longest side
+    float reach;    // of an uneven patch: how far the tip of a triangle of such an edge may be from the nearer end of its base, along it
     float skew;     // how much more a triangle of such an edge turns along with the row: x in visibility.rs
     bool is_uneven;
 };
+
+// What is not the Bezier patch that stands for it: how far points may be off, how far tangents over the shortest of them, and what the
+// products lose by it.
+struct Deviation {
+    float position;
+    float tangent;
+    float product;
+};
+const Deviation NO_DEVIATION = Deviation(0.0, 0.0, 0.0);
 
 precise float precise_dot(vec3 a, vec3 b)
 {
@@ -159,6 +169,34 @@ precise float slack_of(TangentBounds u, TangentBounds v, Grain grain, float erro
     return slack;
 }
 
+// Whether triangles whose corners have at least this product of their place and unit tangents show their back: the patch's points lie
+// within the root of `square_radius` of `middle`.
+bool exceeds_slack(float product, TangentBounds u, TangentBounds v, EmitView view, Grain grain, Scale scale, vec3 middle,
+                   float square_radius, Deviation deviation)
+{
+    precise float radius = sqrt(square_radius) + deviation.position;
+    precise float farthest = sqrt(precise_dot(middle, middle)) + radius;
+    precise float error = scale.rounding + farthest * view.snap;
+    precise float slack = slack_of(u, v, grain, error) * (1.0 + deviation.tangent);
+    precise float least = ((radius + farthest * slack) + 2.0 * scale.eye_rounding) + deviation.product;
+    return product > least;
+}
+
+// The least product of a place and unit tangents.
+float least_product(vec3 along_u[12], vec3 along_v[12], vec3 middle)
+{
+    [[unroll]] for (int i = 0; i < 12; ++i) {
+        along_v[i] = precise_cross(along_v[i], middle);
+    }
+    float product = 3.402823e38;
+    [[unroll]] for (int i = 0; i < 12; ++i) {
+        [[unroll]] for (int j = 0; j < 12; ++j) {
+            product = min(product, precise_dot(along_u[i], along_v[j]));
+        }
+    }
+    return product;
+}
+
 // Bezier points of a bicubic patch, times 36, from those of a B-spline.
 void bezier_patch(vec3 p[16], out vec3 b[16])
 {
@@ -220,20 +258,8 @@ bool is_patch_turned(vec3 b[16], EmitView view, Grain grain, Scale scale, vec3 m
     vec3 along_v[12];
     TangentBounds u = tangents_of(b, 1, 4, along_u);
     TangentBounds v = tangents_of(b, 4, 1, along_v);
-    [[unroll]] for (int i = 0; i < 12; ++i) {
-        along_v[i] = precise_cross(along_v[i], middle);
-    }
-    float product = 3.402823e38;
-    [[unroll]] for (int i = 0; i < 12; ++i) {
-        [[unroll]] for (int j = 0; j < 12; ++j) {
-            product = min(product, precise_dot(along_u[i], along_v[j]));
-        }
-    }
-    precise float radius = sqrt(square_radius);
-    precise float farthest = sqrt(precise_dot(middle, middle)) + radius;
-    precise float error = scale.rounding + farthest * view.snap;
-    precise float least = (radius + farthest * slack_of(u, v, grain, error)) + 2.0 * scale.eye_rounding;
-    return product > least;
+    float product = least_product(along_u, along_v, middle);
+    return exceeds_slack(product, u, v, view, grain, scale, middle, square_radius, NO_DEVIATION);
 }
 
 // Whether nothing of a bicubic patch can be seen, by its Bezier points times 36. `displacement` is how far its points may be
@@ -268,25 +294,5 @@ bool is_patch_unseen(vec3 b[16], EmitView view, Grain grain, bool cull_back, flo
         is_unseen = is_patch_turned(b, view, grain, scale, middle, square_radius);
     }
     return is_unseen;
-}
-
-// Whether a triangle shows its back, by offsets of its corners from the eye.
-bool is_triangle_turned(vec3 d0, vec3 d1, vec3 d2, float error, float eye_rounding)
-{
-    precise vec3 a = d1 - d0;
-    precise vec3 b = d2 - d0;
-    precise float a_length = sqrt(precise_dot(a, a));
-    precise float b_length = sqrt(precise_dot(b, b));
-    precise float area = a_length * b_length;
-    precise float noise = TURN_MARGIN * area + (2.0 * error) * ((a_length + b_length) + 2.0 * error);
-    precise float least = sqrt(precise_dot(d0, d0)) * noise + (2.0 * eye_rounding) * area;
-    return precise_dot(d0, precise_cross(a, b)) > least;
-}
-
-// Whether all triangles of a flat quad show their back, split along either diagonal.
-bool is_quad_turned(vec3 d0, vec3 d1, vec3 d2, vec3 d3, float error, float eye_rounding)
-{
-    return is_triangle_turned(d0, d1, d2, error, eye_rounding) && is_triangle_turned(d0, d2, d3, error, eye_rounding)
-        && is_triangle_turned(d0, d1, d3, error, eye_rounding) && is_triangle_turned(d1, d2, d3, error, eye_rounding);
 }
 #endif

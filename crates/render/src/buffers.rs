@@ -13,7 +13,7 @@ use planish_subdiv::topology::NONE;
 use crate::displacement::limit_seats;
 use crate::edit_points::targets;
 use crate::error::Error;
-use crate::lists::{Capacities, KIND_COUNT, LIST_COUNT, LIST_PHASES, Phases};
+use crate::lists::{Capacities, KIND_COUNT, LIST_COUNT, LIST_PHASES, Phases, sum_of};
 use crate::marks::Marks;
 use crate::objects::ObjectSizes;
 use crate::options::SurfaceMethod;
@@ -241,19 +241,18 @@ impl ListBuffers {
                 *head = ListHead { groups_x: groups.x, groups_y: groups.y, count, ..*head };
             }
         }
-        let sum = |counts: &[u32]| counts.iter().sum::<u32>();
         let [patches, leaves, cut, cut_gregory] = capacities.items;
         Ok(Self {
-            chunks: array::<ListItem>(device, "chunks", sum(&capacities.chunks))?,
-            active: array::<ListItem>(device, "active faces", sum(&capacities.active))?,
+            chunks: array::<ListItem>(device, "chunks", sum_of(&capacities.chunks))?,
+            active: array::<ListItem>(device, "active faces", sum_of(&capacities.active))?,
             items: [
                 array::<ListItem>(device, "patch items", patches)?,
                 array::<ListItem>(device, "leaf items", leaves)?,
                 array::<ListItem>(device, "cut items", cut)?,
                 array::<ListItem>(device, "cut Gregory items", cut_gregory)?,
             ],
-            entries: array::<DrawEntry>(device, "draw lists", sum(&capacities.entries))?,
-            draws: array::<DrawArguments>(device, "draws", sum(&capacities.draws))?,
+            entries: array::<DrawEntry>(device, "draw lists", sum_of(&capacities.entries))?,
+            draws: array::<DrawArguments>(device, "draws", sum_of(&capacities.draws))?,
             heads: array::<ListHead>(device, "list heads", LIST_COUNT as u32)?,
             empty_heads: table(device, "empty list heads", &heads)?,
             heads_read: read_back::<ListHead>(device, "list heads", LIST_COUNT)?,

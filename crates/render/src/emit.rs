@@ -1,12 +1,12 @@
 //! The emit stage: which patches are drawn, in how many pieces, and the draws of them. Shaders: `glsl/emit.comp`, and
-//! `glsl/finish_lists.comp`, which closes the lists.
+//! `glsl/finish_lists.comp`, which closes the lists. The twin for Gregory patches is in `emit_gregory.rs`.
 
 use planish_gpu::{ComputePipeline, Device, Encoder, Feature, SpecConstant};
 use planish_shaders as shaders;
-use planish_shaders::{DrawEntry, EmitPush, EmitView, LimitPoint, Object};
-use planish_subdiv::patch::RegularPatch;
+use planish_shaders::{DrawEntry, EmitPush, EmitView, LimitPoint, Object, SpokePoint};
+use planish_subdiv::patch::{PatchInfo, RegularPatch};
 use planish_subdiv::selection::{Cut, density_at};
-use planish_subdiv::tables::{MeshRanges, Tables};
+use planish_subdiv::tables::{GregoryKind, MeshRanges, Tables};
 use planish_subdiv::topology::NONE;
 
 use crate::camera::FrameCamera;
@@ -74,7 +74,8 @@ impl Emit {
         })
     }
 
-    /// Records the stage: four dispatches, and one where patches may be cut. Takes the time `emit`.
+    /// Records the stage: a dispatch for each kind of list, of leaves one for filling quads and one for Gregory patches. Takes the time
+    /// `emit`.
     pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
         let scene = address(&surface.frame.scene);
         let heads = &surface.lists.heads;
@@ -136,6 +137,8 @@ pub struct EmitInput<'a> {
     pub points: &'a [[f32; 3]],
     /// Limit points.
     pub limits: &'a [LimitPoint],
+    /// Spokes; none where no face is a Gregory patch.
+    pub spokes: &'a [SpokePoint],
     /// The view.
     pub view: &'a EmitView,
     /// Spacing.
@@ -160,7 +163,11 @@ pub fn emit(input: &EmitInput<'_>) -> Emitted {
     }
     for leaf in &input.cut.leaves {
         let face = &input.tables.irregular[leaf.face as usize];
-        input.leaf(leaf.face, face, split_edges(&face.edges), &mut emitted);
+        let split_edges = split_edges(&face.edges);
+        match input.tables.gregory.faces.get(leaf.face as usize).filter(|face| face.kind != GregoryKind::None) {
+            Some(gregory) => input.gregory_leaf(leaf.face, gregory, split_edges, &mut emitted),
+            None => input.leaf(leaf.face, face, split_edges, &mut emitted),
+        }
     }
     for entries in &mut emitted {
         entries.sort_by_key(|entry| (entry.place, entry.flags));
@@ -169,25 +176,27 @@ pub fn emit(input: &EmitInput<'_>) -> Emitted {
 }
 
 impl EmitInput<'_> {
-    fn is_culled(&self) -> bool {
+    pub(crate) fn is_culled(&self) -> bool {
         self.view.cull != 0
     }
 
     /// OBJECT_HIDES_BACKS and not OBJECT_MIRRORED.
-    fn culls_back(&self) -> bool {
+    pub(crate) fn culls_back(&self) -> bool {
         self.view.cull == 2 && self.object.0.flags & 6 == 2
     }
 
-    fn entry(&self, place: u32, flags: u32, triangles: u32, factors: &PatchFactors) -> DrawEntry {
+    pub(crate) fn entry(&self, place: u32, flags: u32, triangles: u32, factors: &PatchFactors) -> DrawEntry {
         let PatchFactors { low, high, inner, .. } = *factors;
         DrawEntry { place, object: self.object.1, flags, triangles, low, high, inner }
     }
 
+    pub(crate) fn factors(&self, info: &PatchInfo, split_edges: u32) -> PatchFactors {
+        let corners = self.tables.ptex_faces[(self.mesh.ptex_faces.start + info.location.ptex_face) as usize];
+        PatchFactors::new(|u, v| density_at(self.densities, corners, u, v), info, split_edges, self.spacing)
+    }
+
     fn patch(&self, place: u32, patch: &RegularPatch, split_edges: u32, emitted: &mut Emitted) {
-        let ptex_face = self.mesh.ptex_faces.start + patch.info.location.ptex_face;
-        let corners = self.tables.ptex_faces[ptex_face as usize];
-        let density = |u, v| density_at(self.densities, corners, u, v);
-        let factors = PatchFactors::new(density, &patch.info, split_edges, self.spacing);
+        let factors = self.factors(&patch.info, split_edges);
         let pieces = factors.cut_count();
         let displacement = self.object.0.displacement;
         // The tangents of a patch with a semi-sharp crease are not those of its control points: it is always drawn.
@@ -208,7 +217,7 @@ impl EmitInput<'_> {
             let own = factors.piece(pieces, piece);
             let mut part = bezier;
             bezier_part(&mut part, own.low, own.high);
-            let grain = Grain { grain: 1.0, skew: 0.0, is_uneven: false };
+            let grain = Grain { grain: 1.0, reach: 0.0, skew: 0.0, is_uneven: false };
             if !(is_tested && is_patch_unseen(&part, self.view, &grain, false, displacement)) {
                 let flags = split_edges | piece[0] << 4 | piece[1] << 12 | pieces << 20;
                 let triangles = triangle_count(own.counts, own.inner);

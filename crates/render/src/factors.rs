@@ -176,7 +176,7 @@ impl PatchFactors {
         let depth = shortest;
         let is_uneven = self.high != [0.0; 4] || (0..4).any(|edge| self.low[edge] != self.inner[edge % 2]);
         if !is_uneven {
-            return Grain { grain: 1.0 / shortest, skew: 0.0, is_uneven };
+            return Grain { grain: 1.0 / shortest, reach: 0.0, skew: 0.0, is_uneven };
         }
         for edge in 0..4 {
             let mut bounds = self.spacing.segment_bounds(self.low[edge]);
@@ -189,7 +189,7 @@ impl PatchFactors {
         }
         let reach = (RING_REACH * longest).min(1.0).max(depth);
         let product = ((RING_PRODUCT * longest) * longest).min(MAX_RING_PRODUCT);
-        Grain { grain: reach / (shortest * depth), skew: product / (2.0 * depth), is_uneven }
+        Grain { grain: reach / (shortest * depth), reach: product.sqrt(), skew: product / (2.0 * depth), is_uneven }
     }
 }
 
@@ -228,6 +228,8 @@ const MAX_RING_PRODUCT: f32 = 0.5;
 pub struct Grain {
     /// 1 over the shortest side of a triangle; of an uneven patch at least 1 over a triangle's area times the longest side.
     pub grain: f32,
+    /// Of an uneven patch: how far the tip of a triangle of such an edge may be from the nearer end of its base, along the edge.
+    pub reach: f32,
     /// How much more a triangle of an uneven edge turns along with the row: x in the text of [`crate::visibility`].
     pub skew: f32,
     /// Whether an edge has other points than the row beside it.
@@ -312,7 +314,7 @@ mod tests {
     #[test]
     fn rings_are_skewed_only_where_an_edge_has_other_points() {
         let even = PatchFactors::new(face([4.0; 4]), &info(0), 0, Spacing::Equal).grain();
-        assert_eq!(even, Grain { grain: 4.0, skew: 0.0, is_uneven: false });
+        assert_eq!(even, Grain { grain: 4.0, reach: 0.0, skew: 0.0, is_uneven: false });
         let odd = PatchFactors::new(face([4.2; 4]), &info(0), 1, Spacing::FractionalOdd).grain();
         // Five segments: three of 1 / 4.2, two of 0.6 / 4.2.
         let depth = 0.6_f32 / 4.2;

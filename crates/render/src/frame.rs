@@ -39,12 +39,13 @@ impl FrameStages {
         })
     }
 
-    /// Records: cages to points, density, select, subdivide, limit, emit. Takes the times `start`, `density`, `select`,
-    /// `subdivide`, `limit` and `emit`; uniform refinement has no density, select and emit. How the frame is seen, selected and
+    /// Records: cages to points, density, select, subdivide, limit, spokes of Gregory patches, emit. Takes the times `start`,
+    /// `density`, `select`, `subdivide`, `limit` (spokes are part of it) and `emit`; uniform refinement has no density, select and emit. How the frame is seen, selected and
     /// culled is what [`Surface::set_frame`] said last when it runs.
     ///
     /// # Panics
-    /// If these are stages for other surfaces: with Gregory patches where it has none, or the other way round.
+    /// If these are stages for other surfaces: with Gregory patches where it has none, or the other way round, or with other control
+    /// points of them.
     pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
         let (needs, desc) = (&self.needs, &surface.desc);
         assert_eq!(needs.gregory, desc.has_gregory_patches(), "stages and surface have Gregory patches");

@@ -149,7 +149,7 @@ impl Capacities {
         let gregory = worst(&|mesh| if mesh.spokes.is_empty() { 0 } else { all(&mesh.irregular) });
         let entries = [patches, patches, leaves, 0, gregory, 0, gregory, 0];
         Self {
-            chunks: chunk_counts.map(|of| sum(of) as u32),
+            chunks: chunk_counts.map(|of| u32::try_from(sum(of)).unwrap_or(u32::MAX)),
             active: std::array::from_fn(|level| {
                 worst(&|mesh| mesh.irregular.get(level).map_or(0, |range| range.len() as u64))
             }),
@@ -234,13 +234,14 @@ impl Capacities {
     }
 }
 
+/// Where lists begin that lie one after the other.
 fn first_of<const N: usize>(counts: &[u32; N]) -> [u32; N] {
-    let mut next = 0;
-    counts.map(|count| {
-        let first = next;
-        next += count;
-        first
-    })
+    std::array::from_fn(|i| sum_of(&counts[..i]))
+}
+
+/// Room of several lists together. What is beyond all numbers is beyond the memory of all devices too: the buffer will be refused.
+pub(crate) fn sum_of(counts: &[u32]) -> u32 {
+    counts.iter().fold(0, |sum, &count| sum.saturating_add(count))
 }
 
 /// What a frame left in its heads and counts.
@@ -327,4 +328,26 @@ pub fn draw_arguments(first: u32, count: u32, method: SurfaceMethod, is_software
     };
     let first_vertex = if method == SurfaceMethod::Uniform { 6 * first } else { first };
     DrawArguments { vertex_count, instance_count, first_vertex, first_instance: 0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_that_are_too_long_together_ask_for_more_than_there_is_and_never_for_less() {
+        let mesh = MeshRanges {
+            patches: vec![0..u32::MAX, 0..u32::MAX],
+            irregular: vec![0..u32::MAX, 0..1],
+            spokes: 0..1,
+            slots: 0..u32::MAX,
+            ..MeshRanges::default()
+        };
+        let objects = vec![ObjectDesc::identity(0); 200];
+        let capacities = Capacities::bounded(&objects, &[mesh], true, u32::MAX / 4);
+        assert_eq!(capacities.chunks, [0, u32::MAX, u32::MAX, u32::MAX]);
+        assert_eq!(capacities.draw_heads()[PatchKind::Triangle as usize].first, u32::MAX / 4 * 4);
+        assert_eq!(sum_of(&capacities.entries), u32::MAX);
+        assert_eq!(capacities.first_chunks()[3], u32::MAX);
+    }
 }

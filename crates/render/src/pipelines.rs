@@ -1,4 +1,4 @@
-//! The pipelines of the three passes: regular, transition and patch-filling quads; or of uniform refinement.
+//! The pipelines of the passes: one for each kind of patch that a method draws, or of uniform refinement.
 
 use planish_gpu::{
     DepthBias, DepthTest, Device, GraphicsPipeline, GraphicsPipelineDesc, PolygonMode, SpecConstant, Topology,

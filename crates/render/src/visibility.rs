@@ -23,7 +23,8 @@
 //!   (S'_u x S_u)`, in which S'_u and S_u, means over steps r and s from one point, differ by |r - s| / 2 times the second
 //!   derivative at most: it needs `x > s |r - s| / (2 t) |S_uu| / |S_v|` besides, and in n there is s / (r t) U / (U V).
 //!
-//! [`crate::factors::PatchFactors::grain`] knows the shortest r and t and the longest s.
+//! [`crate::factors::PatchFactors::grain`] knows the shortest r and t and the longest s. What is no Bezier patch is off one
+//! ([`crate::gregory_visibility`]).
 
 use std::array::from_fn;
 
@@ -31,14 +32,14 @@ use planish_shaders::EmitView;
 
 use crate::factors::Grain;
 
-type Vec3 = [f32; 3];
+pub(crate) type Vec3 = [f32; 3];
 
 // The constants of the shader, by the same names.
 const ROUNDING: f32 = 1.907_348_6e-6;
 const TURN_MARGIN: f32 = 1e-4;
 const CUBE_DIAGONAL: f32 = 1.732_050_9;
 
-fn add(a: Vec3, b: Vec3) -> Vec3 {
+pub(crate) fn add(a: Vec3, b: Vec3) -> Vec3 {
     from_fn(|c| a[c] + b[c])
 }
 
@@ -46,11 +47,11 @@ pub(crate) fn sub(a: Vec3, b: Vec3) -> Vec3 {
     from_fn(|c| a[c] - b[c])
 }
 
-fn times(a: Vec3, factor: f32) -> Vec3 {
+pub(crate) fn times(a: Vec3, factor: f32) -> Vec3 {
     a.map(|c| c * factor)
 }
 
-fn over(a: Vec3, divisor: f32) -> Vec3 {
+pub(crate) fn over(a: Vec3, divisor: f32) -> Vec3 {
     a.map(|c| c / divisor)
 }
 
@@ -58,11 +59,11 @@ pub(crate) fn dot(a: Vec3, b: Vec3) -> f32 {
     (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
 }
 
-fn cross(a: Vec3, b: Vec3) -> Vec3 {
+pub(crate) fn cross(a: Vec3, b: Vec3) -> Vec3 {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-fn largest_component(a: Vec3) -> f32 {
+pub(crate) fn largest_component(a: Vec3) -> f32 {
     a[0].abs().max(a[1].abs()).max(a[2].abs())
 }
 
@@ -70,16 +71,16 @@ fn sum_of_components(a: Vec3) -> f32 {
     (a[0].abs() + a[1].abs()) + a[2].abs()
 }
 
-struct Scale {
-    factor: f32,
-    eye: Vec3,
+pub(crate) struct Scale {
+    pub factor: f32,
+    pub eye: Vec3,
     near: f32,
     rounding: f32,
-    eye_rounding: f32,
+    pub eye_rounding: f32,
 }
 
 impl Scale {
-    fn new(view: &EmitView, unit: f32, points: &[Vec3]) -> Self {
+    pub fn new(view: &EmitView, unit: f32, points: &[Vec3]) -> Self {
         let (mut largest_offset, mut largest) = (0.0_f32, 0.0_f32);
         for &point in points {
             largest_offset = largest_offset.max(largest_component(sub(point, times(view.eye, unit))));
@@ -101,7 +102,7 @@ impl Scale {
     }
 }
 
-fn outside_planes(d: Vec3, view: &EmitView, scale: &Scale, margin: f32) -> u32 {
+pub(crate) fn outside_planes(d: Vec3, view: &EmitView, scale: &Scale, margin: f32) -> u32 {
     let (x, y, w) = (dot(view.clip_x, d), dot(view.clip_y, d), dot(view.clip_w, d));
     let noise = ((scale.rounding + scale.eye_rounding) + ROUNDING) + margin;
     let depth_noise = sum_of_components(view.clip_w) * noise;
@@ -171,14 +172,23 @@ pub fn bezier_part(b: &mut [Vec3; 16], low: [f32; 2], high: [f32; 2]) {
 }
 
 /// Bounds on the lengths of the tangents along one direction, and on the change of them.
-struct TangentBounds {
-    least: f32,
-    most: f32,
-    change: f32,
+pub(crate) struct TangentBounds {
+    pub least: f32,
+    pub most: f32,
+    pub change: f32,
+}
+
+/// What is not the Bezier patch that stands for it: how far points may be off, how far tangents over the shortest of them, and what the
+/// products lose by it.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Deviation {
+    pub position: f32,
+    pub tangent: f32,
+    pub product: f32,
 }
 
 /// Unit vectors along the 12 tangents at the Bezier points, and their bounds.
-fn tangents_of(b: &[Vec3; 16], step: usize, row: usize) -> ([Vec3; 12], TangentBounds) {
+pub(crate) fn tangents_of(b: &[Vec3; 16], step: usize, row: usize) -> ([Vec3; 12], TangentBounds) {
     let (mut least, mut most) = (f32::MAX, 0.0_f32);
     let tangents = from_fn(|i| {
         let at = i / 3 * row + i % 3 * step;
@@ -204,6 +214,55 @@ fn slack_of(u: &TangentBounds, v: &TangentBounds, grain: &Grain, error: f32) -> 
     (noise + noise * noise) + (turn + TURN_MARGIN)
 }
 
+/// What all points of a patch lie in: its middle, from the eye, and the square of its radius.
+pub(crate) struct Ball {
+    pub middle: Vec3,
+    pub square_radius: f32,
+}
+
+impl Ball {
+    /// Around points.
+    pub fn new(middle: Vec3, points: &[Vec3], scale: &Scale) -> Self {
+        let square = |&point: &Vec3| {
+            let around = sub(sub(point, scale.eye), middle);
+            dot(around, around)
+        };
+        Self { middle, square_radius: points.iter().map(square).fold(0.0, f32::max) }
+    }
+}
+
+/// Whether triangles whose corners have at least this product of their place and unit tangents show their back.
+pub(crate) fn exceeds_slack(
+    product: f32,
+    [u, v]: [&TangentBounds; 2],
+    view: &EmitView,
+    grain: &Grain,
+    scale: &Scale,
+    ball: &Ball,
+    deviation: Deviation,
+) -> bool {
+    let radius = ball.square_radius.sqrt() + deviation.position;
+    let farthest = dot(ball.middle, ball.middle).sqrt() + radius;
+    let error = scale.rounding + farthest * view.snap;
+    let slack = slack_of(u, v, grain, error) * (1.0 + deviation.tangent);
+    product > ((radius + farthest * slack) + 2.0 * scale.eye_rounding) + deviation.product
+}
+
+/// The least product of a place and two unit tangents.
+pub(crate) fn least_product(along_u: &[Vec3], along_v: &[Vec3], middle: Vec3) -> f32 {
+    let across_v: Vec<Vec3> = along_v.iter().map(|&v| cross(v, middle)).collect();
+    let products = along_u.iter().flat_map(|&u| across_v.iter().map(move |&v| dot(u, v)));
+    products.fold(f32::MAX, f32::min)
+}
+
+/// Whether all triangles of a patch show their back, by its Bezier points, scaled.
+fn is_patch_turned(b: &[Vec3; 16], view: &EmitView, grain: &Grain, scale: &Scale, ball: &Ball) -> bool {
+    let (along_u, u) = tangents_of(b, 1, 4);
+    let (along_v, v) = tangents_of(b, 4, 1);
+    let product = least_product(&along_u, &along_v, ball.middle);
+    exceeds_slack(product, [&u, &v], view, grain, scale, ball, Deviation::default())
+}
+
 /// Whether nothing of a bicubic patch can be seen, by its Bezier points times 36. `displacement` is how far its points may be
 /// moved; such patches are seen from behind.
 pub fn is_patch_unseen(b: &[Vec3; 16], view: &EmitView, grain: &Grain, cull_back: bool, displacement: f32) -> bool {
@@ -211,23 +270,10 @@ pub fn is_patch_unseen(b: &[Vec3; 16], view: &EmitView, grain: &Grain, cull_back
     let margin = (36.0 * displacement) * scale.factor;
     let b = b.map(|point| times(point, scale.factor));
     let middle = sub(times(add(add(b[0], b[3]), add(b[12], b[15])), 0.25), scale.eye);
-    let (mut planes, mut square_radius) = (31, 0.0_f32);
-    for &point in &b {
-        let d = sub(point, scale.eye);
-        let around = sub(d, middle);
-        planes &= outside_planes(d, view, &scale, margin);
-        square_radius = square_radius.max(dot(around, around));
-    }
-    let (along_u, u) = tangents_of(&b, 1, 4);
-    let (along_v, v) = tangents_of(&b, 4, 1);
-    let across_v = along_v.map(|v| cross(v, middle));
-    let products = along_u.iter().flat_map(|&u| across_v.iter().map(move |&v| dot(u, v)));
-    let product = products.fold(f32::MAX, f32::min);
-    let radius = square_radius.sqrt();
-    let farthest = dot(middle, middle).sqrt() + radius;
-    let error = scale.rounding + farthest * view.snap;
-    let least = (radius + farthest * slack_of(&u, &v, grain, error)) + 2.0 * scale.eye_rounding;
-    planes != 0 || (cull_back && displacement == 0.0 && product > least)
+    let planes = b.iter().fold(31, |planes, &p| planes & outside_planes(sub(p, scale.eye), view, &scale, margin));
+    let ball = Ball::new(middle, &b, &scale);
+    let is_turned = || is_patch_turned(&b, view, grain, &scale, &ball);
+    planes != 0 || (cull_back && displacement == 0.0 && is_turned())
 }
 
 fn is_triangle_turned([d0, d1, d2]: [Vec3; 3], error: f32, eye_rounding: f32) -> bool {
@@ -273,21 +319,21 @@ pub fn is_quad_unseen(
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use planish_subdiv::patch::evaluate;
 
     use super::*;
 
     /// A linear congruential generator's numbers between -1 and 1.
-    struct Random(u64);
+    pub(crate) struct Random(pub u64);
 
     impl Random {
-        fn number(&mut self) -> f64 {
+        pub fn number(&mut self) -> f64 {
             self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (self.0 >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
         }
 
-        fn part(&mut self) -> f64 {
+        pub fn part(&mut self) -> f64 {
             0.5 * self.number() + 0.5
         }
 
@@ -303,7 +349,7 @@ mod tests {
     }
 
     /// A view of everything from `eye`, without a grid.
-    fn view_from(eye: Vec3) -> EmitView {
+    pub(crate) fn view_from(eye: Vec3) -> EmitView {
         EmitView { eye, cull: 2, ..EmitView::default() }
     }
 
@@ -327,7 +373,11 @@ mod tests {
 
     /// Whether a triangle shows its back, by parameters of its corners in counter-clockwise order; by how much.
     fn turn(patch: &[[f64; 3]; 16], eye: [f64; 3], corners: [[f64; 2]; 3]) -> f64 {
-        let [p, q, r] = corners.map(|[u, v]| evaluate(patch, u, v).position);
+        turn_of(corners.map(|[u, v]| evaluate(patch, u, v).position), eye)
+    }
+
+    /// The same by its corners.
+    pub(crate) fn turn_of([p, q, r]: [[f64; 3]; 3], eye: [f64; 3]) -> f64 {
         let minus = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] { from_fn(|c| a[c] - b[c]) };
         let (a, b, d) = (minus(q, p), minus(r, p), minus(p, eye));
         d[0] * (a[1] * b[2] - a[2] * b[1]) + d[1] * (a[2] * b[0] - a[0] * b[2]) + d[2] * (a[0] * b[1] - a[1] * b[0])
@@ -335,7 +385,7 @@ mod tests {
 
     #[test]
     fn every_triangle_along_u_and_v_of_a_patch_that_is_turned_away_shows_its_back() {
-        let found = turned_away(&Grain { grain: 1.0, skew: 0.0, is_uneven: false });
+        let found = turned_away(&Grain { grain: 1.0, reach: 0.0, skew: 0.0, is_uneven: false });
         assert!(found.len() > 400, "only {} patches are turned away", found.len());
         let mut random = Random(11);
         for (patch, eye) in &found {
@@ -354,7 +404,7 @@ mod tests {
     #[test]
     fn every_triangle_of_an_uneven_ring_of_a_patch_that_is_turned_away_shows_its_back() {
         const SKEW: f64 = 1.5;
-        let found = turned_away(&Grain { grain: 1.0, skew: SKEW as f32, is_uneven: true });
+        let found = turned_away(&Grain { grain: 1.0, reach: 1.0, skew: SKEW as f32, is_uneven: true });
         assert!(found.len() > 100, "only {} patches are turned away", found.len());
         let mut random = Random(13);
         let mut tried = 0;
@@ -382,7 +432,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_computed_is_kept() {
-        let grain = Grain { grain: 1.0, skew: 0.0, is_uneven: false };
+        let grain = Grain { grain: 1.0, reach: 0.0, skew: 0.0, is_uneven: false };
         let flat: [Vec3; 16] = from_fn(|i| [(i % 4) as f32, (i / 4) as f32, 0.0]);
         assert!(is_unseen(&flat, [1.5, 1.5, -9.0], &grain));
         assert!(!is_unseen(&flat, [1.5, 1.5, 9.0], &grain));

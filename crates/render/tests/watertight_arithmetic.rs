@@ -95,6 +95,8 @@ fn frames_are_selected_and_culled_by_arithmetic_without_contraction() {
         &shaders::emit_patches_comp::PROGRAM,
         &shaders::emit_leaves_comp::PROGRAM,
         &shaders::emit_cut_comp::PROGRAM,
+        &shaders::emit_gregory_comp::PROGRAM,
+        &shaders::emit_gregory_cut_comp::PROGRAM,
     ];
     for module in modules {
         let report = no_contraction_report(module.spirv).expect("valid SPIR-V");

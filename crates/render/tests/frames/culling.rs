@@ -12,10 +12,10 @@ use crate::seen::Rasterizer;
 use crate::world::{self, World};
 
 /// Closed meshes that face outward.
-const CLOSED: [&str; 6] =
+pub const CLOSED: [&str; 6] =
     ["genus_2", "cube", "adjacent_extraordinary", "two_components", "valence_2_closed", "tetrahedron"];
 /// Meshes with boundaries in all modes, holes in the surface, or far away.
-const OPEN: [&str; 6] =
+pub const OPEN: [&str; 6] =
     ["boundary_valences", "boundary_none", "boundary_edge_only", "open_cylinder", "grid_8x8", "far_from_origin"];
 /// Ways to tessellate: aligned rows, rings that are skewed, factors of 1.
 const WAYS: [(Spacing, f32); 5] = [
@@ -34,7 +34,7 @@ const CUT: [(&str, Spacing, f32); 4] = [
 ];
 /// Directions from which meshes are seen, and distances in diagonals of the bounding box: from outside, along the axes so
 /// that much is seen edge on, and so near that most is outside of the view.
-const EYES: [([f32; 3], f32); 7] = [
+pub const EYES: [([f32; 3], f32); 7] = [
     ([1.0, 0.6, 1.2], 1.1),
     ([-0.4, -1.0, 0.3], 0.9),
     ([1.0, 0.0, 0.0], 0.8),
@@ -50,19 +50,19 @@ type Key = (usize, u32, u32, u32);
 
 /// How much of what could be left out was, of whole patches and of pieces.
 #[derive(Debug, Default)]
-struct Tally {
-    unseen: [u32; 2],
-    found: [u32; 2],
+pub struct Tally {
+    pub unseen: [u32; 2],
+    pub found: [u32; 2],
 }
 
-fn options(world: &World, camera: &FrameCamera, density: Density) -> FrameOptions {
+pub fn options(world: &World, camera: &FrameCamera, density: Density) -> FrameOptions {
     // Backs are hidden from outside alone.
     let culling = if world.is_outside(camera.eye()) { Culling::UnseenAndBacks } else { Culling::Unseen };
     FrameOptions { density, selection: Selection::Dynamic, culling, object_lod: false }
 }
 
 /// The captured triangles of everything that is there.
-fn triangles(
+pub fn triangles(
     lab: &Lab,
     world: &mut World,
     spacing: Spacing,
@@ -87,7 +87,7 @@ fn triangles(
 }
 
 /// Nothing that a frame leaves out could be seen; `all` are the triangles of everything.
-fn check_left_out(
+pub fn check_left_out(
     lab: &Lab,
     world: &mut World,
     (spacing, density): (Spacing, Density),
@@ -99,7 +99,7 @@ fn check_left_out(
     lab.run(&mut world.surface, spacing, camera, &options);
     let entries = lab.unsorted_entries(&world.surface);
     let of_kind = |kind: usize| entries[kind].iter().map(move |entry| (kind, entry.object, entry.place, entry.flags));
-    let kept: HashSet<Key> = (0..4).flat_map(of_kind).collect();
+    let kept: HashSet<Key> = (0..entries.len()).flat_map(of_kind).collect();
     let named = format!("{} {spacing:?} {density:?} from {}", world.name, camera.eye());
     assert!(kept.iter().all(|key| all.contains_key(key)), "{named}: what is kept is not what there is");
     let rasterizer = Rasterizer { camera, sub_pixel_bits: lab.device.limits().sub_pixel_bits };
@@ -109,7 +109,7 @@ fn check_left_out(
         let shows = |cull_back: bool| own.chunks_exact(3).any(|triangle| rasterizer.shows(triangle, cull_back));
         assert!(kept.contains(key) || !shows(hides_back), "{named}: {key:?} is left out");
         // Pieces are judged by the view alone. Small images have large grids: there more is kept.
-        let is_piece = key.0 == PatchKind::Cut as usize;
+        let is_piece = PatchKind::ALL[key.0].is_cut();
         if camera.size[0] > 100 && !shows(hides_back && !is_piece) {
             tally.unseen[usize::from(is_piece)] += 1;
             tally.found[usize::from(is_piece)] += u32::from(!kept.contains(key));

@@ -15,7 +15,7 @@ use crate::world::{World, scene};
 
 const SIZE: [u32; 2] = [96, 64];
 /// Extraordinary vertices, triangles and other faces, boundaries, creases and darts, semi-sharp rules, and several meshes at once.
-const SCENES: [&str; 12] = [
+pub const SCENES: [&str; 12] = [
     "adjacent_extraordinary",
     "mixed_triangles_quads",
     "ngon_5",
@@ -30,7 +30,7 @@ const SCENES: [&str; 12] = [
     "several.json",
 ];
 
-const DESC: SurfaceDesc = SurfaceDesc {
+pub const DESC: SurfaceDesc = SurfaceDesc {
     method: SurfaceMethod::Gregory,
     level: 0,
     crease_patches: CreasePatches::Infinite,
@@ -39,7 +39,7 @@ const DESC: SurfaceDesc = SurfaceDesc {
     gregory_points: GregoryPoints::TwoStage,
 };
 
-fn world(lab: &Lab, name: &str) -> World {
+pub fn world(lab: &Lab, name: &str) -> World {
     let (meshes, objects) = scene(name, false);
     World::with_desc(&lab.device, name, meshes, objects, DESC, None)
 }

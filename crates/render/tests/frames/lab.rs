@@ -182,11 +182,15 @@ pub struct Easel {
 
 impl Easel {
     pub fn new(lab: &Lab, spacing: Spacing, cull_back: bool, size: [u32; 2]) -> Self {
+        Self::with_desc(lab, &SurfaceDesc::default(), spacing, cull_back, size)
+    }
+
+    /// For surfaces that are made so.
+    pub fn with_desc(lab: &Lab, desc: &SurfaceDesc, spacing: Spacing, cull_back: bool, size: [u32; 2]) -> Self {
         let options = DrawOptions { view: View::Shaded, layers: Layers::Geometry, cull_back };
-        let desc = SurfaceDesc::default();
         Self {
             spacing,
-            passes: DrawPasses::new(&lab.device, &desc, lab.needs(spacing), &options).expect("pipelines"),
+            passes: DrawPasses::new(&lab.device, desc, lab.needs(spacing), &options).expect("pipelines"),
             targets: Targets::new(&lab.device, size, Layers::Geometry).expect("images"),
         }
     }

@@ -4,6 +4,8 @@
 mod culling;
 mod fuzz;
 mod gregory;
+mod gregory_culling;
+mod gregory_lists;
 mod in_use;
 mod inside;
 mod kernels;

@@ -2,6 +2,7 @@
 
 use planish_render::density::density;
 use planish_render::emit::{EmitInput, Emitted, emit};
+use planish_render::spokes::spokes;
 use planish_render::visibility::point_outside_planes;
 use planish_render::{FrameCamera, FrameOptions, Spacing, limit, subdivide};
 use planish_shaders::{FrameInput, LimitPoint, Object, SlotDensity};
@@ -56,7 +57,8 @@ impl Twin {
         let largest = all.fold(0.0_f32, f32::max);
         let selection = if is_static { Selection::Static { frame_density: largest } } else { Selection::Dynamic };
         let points = subdivide::subdivide(tables, &cage);
-        let limits = limit::limit(tables, &points);
+        let (limits, tangents) = limit::limit_with_tangents(tables, &points);
+        let spokes = spokes(tables, &points, &limits, &tangents);
         let mut twin = Self { objects, points, limits, entries: Emitted::default(), density: largest };
         for (index, object) in surface.objects().iter().enumerate().filter(|(index, _)| seen[*index]) {
             let mesh = &surface.meshes()[world.objects[index].mesh];
@@ -70,6 +72,7 @@ impl Twin {
                 densities: &slots.density,
                 points: &twin.points,
                 limits: &twin.limits,
+                spokes: &spokes,
                 view: &input.view,
                 spacing,
             });

@@ -61,6 +61,12 @@ impl World {
         Self::with_capacity(device, "objects", meshes, objects, level, capacity)
     }
 
+    /// The same objects of surfaces that are made so.
+    pub fn with_objects(device: &Device, desc: SurfaceDesc) -> Self {
+        let (meshes, objects) = objects();
+        Self::with_desc(device, "objects", meshes, objects, desc, None)
+    }
+
     /// Gives a mesh a displacement map; the surface was made to be displaced.
     pub fn displace(&mut self, device: &Device, mesh: usize, map: &DisplacementMap) {
         let levels: Vec<[u32; 3]> = map.levels.iter().map(|l| [l.first_texel, l.width, l.height]).collect();
