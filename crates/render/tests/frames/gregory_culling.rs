@@ -126,19 +126,25 @@ fn counts(world: &World) -> [u32; 2] {
 #[test]
 fn images_of_gregory_patches_are_the_same_bits_with_culling_and_without() {
     const SIZE: [u32; 2] = [96, 64];
-    for gregory_points in [GregoryPoints::TwoStage, GregoryPoints::Stencil] {
+    // Each spacing once: making the programs takes longer than the frames do.
+    let [equal, odd, even] = SPACINGS;
+    for (gregory_points, spacings) in
+        [(GregoryPoints::TwoStage, vec![equal, odd]), (GregoryPoints::Stencil, vec![even])]
+    {
         let (lab, desc) = (lab(gregory_points), SurfaceDesc { gregory_points, ..DESC });
-        let easels =
-            SPACINGS.map(|spacing| [false, true].map(|back| Easel::with_desc(&lab, &desc, spacing, back, SIZE)));
+        let easels: Vec<_> = spacings
+            .into_iter()
+            .map(|spacing| [false, true].map(|back| Easel::with_desc(&lab, &desc, spacing, back, SIZE)))
+            .collect();
         let hero = world(&lab, ("hero", true), desc);
         for (turn, mut world) in worlds(&lab, desc).chain([hero]).enumerate() {
-            for (i, &eye) in EYES.iter().enumerate().filter(|(i, _)| (i + turn) % 2 == 0) {
+            for (i, &eye) in EYES.iter().enumerate().filter(|(i, _)| (i + turn) % 3 == 0) {
                 let camera = world.camera_from(eye, SIZE);
                 let density = if i % 3 == 0 { Density::Tess(6.0) } else { Density::EdgePixels([1.5, 4.0][i % 2]) };
                 let culled = options(&world, &camera, density);
                 let hides = world.objects.iter().all(|object| object.hides_backs && !object.is_mirrored());
                 let cull_back = hides && culled.culling == Culling::UnseenAndBacks;
-                let easel = &easels[(turn + i) % 3][usize::from(cull_back)];
+                let easel = &easels[(turn + i / 3) % easels.len()][usize::from(cull_back)];
                 let unculled = FrameOptions { culling: Culling::Off, ..culled };
                 let expected = lab.draw(&mut world.surface, easel, &camera, &unculled);
                 let images = lab.draw(&mut world.surface, easel, &camera, &culled);
