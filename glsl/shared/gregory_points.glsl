@@ -32,7 +32,7 @@ void stencil_points(SceneTables scene, GregoryFace face, uint place, uint corner
         }
     }
     for (uint k = 0u; k < stencil.point_count; ++k) {
-        uvec2 entry = scene.v.stencil_points.v[stencil.first_point + k];
+        uvec3 entry = scene.v.stencil_points.v[stencil.first_point + k];
         uint column = stencil.first_weight + entry.y * 8u * corners;
         vec3 point = scene.v.points.v[entry.x];
         [[unroll]] for (uint row = 0u; row < 16u; ++row) {

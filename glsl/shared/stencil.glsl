@@ -12,15 +12,18 @@ bool has_stencil(SceneTables scene, uint place)
     return STENCIL && scene.v.stencils.v[place].point_count != 0u;
 }
 
-// Two rows at once, relative to their origins: all rows go over the whole ring, in the order of points that all patches have. Adding what
-// has no weight changes no bit.
+// Two rows at once, relative to their origins, in the order of points that all patches have. Points without a weight in either are
+// skipped by the ring's masks; adding what has none in one of them changes no bit.
 void weigh_ring(SceneTables scene, GregoryStencil stencil, uint row_count, uvec2 rows, vec3 origin0, vec3 origin1, out precise vec3 sum0,
                 out precise vec3 sum1)
 {
     precise vec3 made0 = vec3(0.0);
     precise vec3 made1 = vec3(0.0);
     for (uint i = 0u; i < stencil.point_count; ++i) {
-        uvec2 entry = scene.v.stencil_points.v[stencil.first_point + i];
+        uvec3 entry = scene.v.stencil_points.v[stencil.first_point + i];
+        if ((entry.z >> rows.x & 1u) == 0u && (entry.z >> rows.y & 1u) == 0u) {
+            continue;
+        }
         uint column = stencil.first_weight + entry.y * row_count;
         vec3 point = scene.v.points.v[entry.x];
         precise vec3 offset0 = point - origin0;

@@ -118,8 +118,8 @@ fn info_tells_what_the_tables_of_stencils_take() {
     let cube = info("cube", "--gregory stencil");
     let stencils = &cube["gregory_stencils"];
     assert_eq!((&stencils["connectivities"], &stencils["faces"]), (&1.into(), &6.into()));
-    // Six faces of 8 words and of 8 points of 2 words; 32 rows of 8 weights.
-    assert_eq!(stencils["bytes"], 4 * (6 * (8 + 8 * 2) + 32 * 8));
+    // Six faces of 8 words and of 8 points of 3 words; 32 rows of 8 weights.
+    assert_eq!(stencils["bytes"], 4 * (6 * (8 + 8 * 3) + 32 * 8));
     assert!(info("cube", "")["gregory_stencils"].is_null());
     assert_eq!(info("valence_7", "--gregory stencil")["gregory_stencils"]["faces_of_spokes"], 0);
     let ngon = info("ngon_5", "--gregory stencil");

@@ -49,6 +49,27 @@ fn the_paper_s_order_of_errors_holds() {
 }
 
 #[test]
+fn images_show_what_other_methods_show() {
+    let folder = temporary();
+    let image = |method: &str, view: &str| {
+        let path = folder.path().join("image.png");
+        let flags = format!("--method {method} --view {view} --tess 9 --size 96x64");
+        Planish::render(&scene("genus_2"), &path).flags(&flags).run().silent_success().unwrap();
+        image::open(&path).unwrap().into_rgb8()
+    };
+    // Programs of their own: of the normal alone, of all layers, and of colours.
+    for view in ["normal", "uv", "color"] {
+        let expected = image("fas", view);
+        for method in ["acc", "pm"] {
+            let found = image(method, view);
+            let errors = expected.iter().zip(found.iter()).map(|(a, b)| u32::from(a.abs_diff(*b)));
+            let mean = f64::from(errors.sum::<u32>()) / expected.len() as f64;
+            assert!(mean < 2.5, "{method}, {view}: {mean}");
+        }
+    }
+}
+
+#[test]
 fn what_they_have_no_patches_for_is_refused() {
     let folder = temporary();
     let path = folder.path().join("dump.ply");
@@ -64,6 +85,8 @@ fn what_they_have_no_patches_for_is_refused() {
         refused("boundary_valences", "touches a boundary or crease at vertex");
         refused("crease_2_3", "touches a boundary or crease at vertex");
         refused("valence_2_closed", "of valence 2");
+        refused("corner_infinite", "has a sharp vertex");
+        refused("hole_ngon", "touches a face of other than four sides at vertex");
         refused("color_vertex", "expected no colours");
         let map = folder.path().join("map.png");
         image::GrayImage::new(4, 4).save(&map).unwrap();
@@ -72,6 +95,6 @@ fn what_they_have_no_patches_for_is_refused() {
             .path(&map)
             .run();
         let told = outcome.one_error(1).unwrap();
-        assert!(told.contains("expected no displacement map"), "{told}");
+        assert!(told.contains(&format!("method {method}")) && told.contains("expected no displacement map"), "{told}");
     }
 }

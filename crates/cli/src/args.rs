@@ -125,7 +125,7 @@ pub struct CompareArguments {
     /// Dump that it is compared with, .ply; taken as triangles, so better denser than A
     #[arg(value_name = "B")]
     pub b: PathBuf,
-    /// Points on each surface, spread evenly by area, whose nearest points on the other are looked for; 0 for none
+    /// Points on each surface, spread evenly by area, whose nearest points on the other are looked for, besides those of all vertices for the greatest distance; 0 for none
     #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = RangedU64ValueParser::<u32>::new().range(0..=MAX_COMPARED_SAMPLES))]
     pub samples: u32,
     /// Print JSON
@@ -207,7 +207,7 @@ pub struct BenchArguments {
     /// Time fas and dfas at these tess factors with and without watertight seams
     #[arg(long, requires = "tess", conflicts_with = "creases")]
     pub seams: bool,
-    /// Time fas, dfas and both implementations of gregory side by side instead, at tess factors 6, 10, 17 and 25 or those given
+    /// Time fas, dfas, both implementations of gregory and, on cages that they have patches for, acc and pm in turns instead, with nothing culled, at tess factors 6, 10, 17 and 25 or those given
     #[arg(long, conflicts_with_all = ["levels", "cpu", "path", "cameras", "creases", "seams"])]
     pub gregory: bool,
     /// Time the building of tables for these levels instead, on one thread of the CPU; needs no device
@@ -281,7 +281,7 @@ pub struct SurfaceArguments {
     /// How control points of Gregory patches are made
     #[arg(long, value_enum, default_value_t = GregoryPointsName::TwoStage)]
     pub gregory: GregoryPointsName,
-    /// What irregular faces are drawn as where --max-level ends refinement, by methods fas and dfas; gregory does not refine
+    /// What irregular faces are drawn as where --max-level ends refinement, by methods fas and dfas; gregory, acc and pm do not refine
     #[arg(long, value_enum, default_value_t = EndCapName::Quad)]
     pub end_cap: EndCapName,
     /// Normals of Gregory patches: of their Bezier form, exact along edges, or of the rational patch

@@ -160,7 +160,7 @@ pub fn check_gregory(cage: &Cage, desc: &SurfaceDesc) -> Result<()> {
     if !desc.has_gregory_patches() {
         return Ok(());
     }
-    if desc.method != SurfaceMethod::Gregory && cage.is_displaced() {
+    if !desc.method.is_one_patch_a_face() && cage.is_displaced() {
         bail!("Gregory patches as end caps are not displaced: expected no displacement map");
     }
     if desc.crease_patches == CreasePatches::Single {

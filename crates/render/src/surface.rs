@@ -187,7 +187,7 @@ impl Surface {
         let buffers = TableBuffers::new(device, &tables, &marks, &density_scales)?;
         let frame = FrameBuffers::new(device, &tables, &gpu_objects, &sizes, &marks)?;
         let lists = ListBuffers::new(device, &capacities, &phases, desc.method)?;
-        let tex_coords = if desc.displaced && desc.method.is_one_patch_a_face() {
+        let tex_coords = if desc.displaced && desc.method == SurfaceMethod::Gregory {
             TexCoordBuffers::of_tables_and_tree(device, &tables, &tex_tree(meshes, &ranges)?)?
         } else {
             TexCoordBuffers::of_tables(device, &tables)?
@@ -308,7 +308,7 @@ impl Surface {
         Ok(self.frame.data.write(0, &[data])?)
     }
 
-    /// What [`Self::set_frame`] tells the kernels.
+    /// What [`Self::set_frame`] tells the kernels. Of methods that are there to compare with nothing is culled, whatever is asked.
     pub fn frame_input(&self, camera: &FrameCamera, options: &FrameOptions) -> Result<FrameInput, Error> {
         let mut options = *options;
         if self.desc.method.rival().is_some() {

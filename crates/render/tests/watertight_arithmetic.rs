@@ -39,7 +39,7 @@ const DISPLACEMENT: [&str; 12] = [
 /// Of the patches that are no bicubic ones.
 const EDGES: [&str; 7] =
     ["weigh_ends", "edge_normal", "bernstein", "without_sign_of_zero", "border_point", "over_36", "curve_position"];
-const WATERTIGHT: [(&ShaderModule, &[&str]); 15] = [
+const WATERTIGHT: [(&ShaderModule, &[&str]); 18] = [
     (&shaders::bspline_patch_lean_tese::PROGRAM, &EVALUATION),
     (&shaders::bspline_patch_layers_tese::PROGRAM, &EVALUATION),
     (&shaders::bspline_patch_dump_tese::PROGRAM, &EVALUATION),
@@ -56,8 +56,11 @@ const WATERTIGHT: [(&ShaderModule, &[&str]); 15] = [
     (&shaders::gregory_patch_lean_maps_tese::PROGRAM, &EDGES),
     (&shaders::acc_patch_lean_tese::PROGRAM, &EDGES),
     (&shaders::pm_patch_lean_tese::PROGRAM, &EDGES),
-    (&shaders::acc_patch_tesc::PROGRAM, &["tangent", "scaled_by", "to_world_vector"]),
-    (&shaders::pm_patch_tesc::PROGRAM, &["scaled_by", "to_world", "to_world_vector"]),
+    (&shaders::gregory_patch_dump_tese::PROGRAM, &EDGES),
+    (&shaders::acc_patch_dump_tese::PROGRAM, &EDGES),
+    (&shaders::pm_patch_dump_tese::PROGRAM, &EDGES),
+    (&shaders::acc_patch_tesc::PROGRAM, &["tangent", "scaled_by", "to_world", "to_world_vector"]),
+    (&shaders::pm_patch_tesc::PROGRAM, &["scaled_by", "sine_of", "sum_of_sines", "to_world", "to_world_vector"]),
 ];
 
 #[test]

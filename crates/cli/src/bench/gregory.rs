@@ -57,6 +57,8 @@ pub fn run(bench: &Bench, device: &Device, cage: &Cage) -> Result<Vec<GregoryRow
                 crease_patches: CreasePatches::default(),
                 watertight: !bench.arguments.no_watertight,
                 gregory_points,
+                // Of ACC and Pm-patches nothing is.
+                is_culled: false,
             };
             match Timed::new(bench, device, cage, setting) {
                 Ok(timed) => of_factor.push((name, method, timed)),

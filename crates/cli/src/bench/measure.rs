@@ -86,7 +86,7 @@ impl<'a> Timed<'a> {
     pub fn new(bench: &Bench, device: &Device, cage: &'a Cage, setting: Setting) -> Result<Self> {
         let arguments = bench.arguments;
         let camera = cage.default_view()?;
-        let Setting { method, level, tess_factor, crease_patches, watertight, gregory_points } = setting;
+        let Setting { method, level, tess_factor, crease_patches, watertight, gregory_points, is_culled } = setting;
         let objects = cage.objects(&camera);
         let mut plan = Plan {
             frame_camera: frame_camera(&camera, arguments.size),
@@ -111,7 +111,7 @@ impl<'a> Timed<'a> {
             },
             options: frame_options(method, Density::Tess(tess_factor), false),
         };
-        plan.cull(arguments.no_cull);
+        plan.cull(arguments.no_cull || !is_culled);
         let mut session = Session::new(device, cage, &plan, bench.console)?;
         let images = session.images(View::Shaded, Layers::None)?;
         let mut cage_motion = CageMotion::new(cage);
@@ -144,7 +144,7 @@ impl<'a> Timed<'a> {
 }
 
 /// What is drawn.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Setting {
     pub method: SurfaceMethod,
     pub level: u32,
@@ -152,6 +152,22 @@ pub struct Setting {
     pub crease_patches: CreasePatches,
     pub watertight: bool,
     pub gregory_points: GregoryPoints,
+    /// What cannot be seen is left out, unless that is not wanted.
+    pub is_culled: bool,
+}
+
+impl Default for Setting {
+    fn default() -> Self {
+        Self {
+            method: SurfaceMethod::default(),
+            level: 0,
+            tess_factor: 1.0,
+            crease_patches: CreasePatches::default(),
+            watertight: true,
+            gregory_points: GregoryPoints::default(),
+            is_culled: true,
+        }
+    }
 }
 
 fn medians(level: u32, frames: &[FrameStats]) -> Measured {

@@ -6,7 +6,7 @@
 //! | `factors` | fas at several tess factors |
 //! | `creases` | crease patches of every kind with refined creases |
 //! | `seams` | frames whose seams have the same bits on both sides with frames of patches by themselves |
-//! | `gregory` | both implementations of Gregory patches with fas and dfas |
+//! | `gregory` | both implementations of Gregory patches with fas, dfas, ACC and Pm-patches |
 //! | `path` | fas with dfas, along a camera path or from the scene's cameras; `chart` draws it |
 //! | `cpu` | the building of tables alone |
 //! | `measure` | what all of them measure of a frame |

@@ -14,14 +14,18 @@ fn deviation(point: &SurfacePoint, tree: &Tree<'_>) -> Option<Deviation> {
     Some(Deviation { distance: nearest.distance_squared.sqrt(), angle })
 }
 
-/// Samples one surface by area and looks for the nearest points of the other. Vertices count for the maxima alone: of a spike an equal
+/// Samples one surface by area and looks for the nearest points of the other. Vertices count for the maximum of distances alone: of a spike an equal
 /// share of the area may have no sample.
 pub fn compare(from: &Soup, to: &Tree<'_>, sample_count: u32) -> Summary {
     let mut tally = Tally::default();
     for (weight, samples) in [(1.0, samples(from, sample_count)), (0.0, vertices(from))] {
         let deviations = map_on_all_cores(&samples, |&(triangle, weights)| deviation(&triangle.at(weights), to));
         for (&(triangle, weights), deviation) in samples.iter().zip(deviations) {
-            if let Some(deviation) = deviation {
+            if let Some(mut deviation) = deviation {
+                if weight == 0.0 {
+                    // Where triangles meet at an edge any of their normals may be the one that is found.
+                    deviation.angle = None;
+                }
                 tally.add(weight, deviation, Place::new(triangle.face, triangle.at(weights).uv));
             }
         }

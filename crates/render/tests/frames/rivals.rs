@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use planish_render::limit::limit;
 use planish_render::rival_spokes::rival_spokes;
-use planish_render::{Density, FrameOptions, Spacing, SurfaceDesc, SurfaceMethod};
+use planish_render::{Culling, Density, FrameOptions, Spacing, SurfaceDesc, SurfaceMethod};
 use planish_subdiv::gregory::{Rival, RivalSurface};
 
 use crate::lab::Lab;
@@ -26,7 +26,10 @@ fn drawn(lab: &Lab, desc: SurfaceDesc, name: &str) -> World {
     let mut world = World::with_desc(&lab.device, name, meshes, objects, desc, None);
     let camera = world.cameras([96, 64])[0];
     let options = FrameOptions { density: Density::Tess(5.3), ..FrameOptions::default() };
-    lab.run(&mut world.surface, Spacing::FractionalEven, &camera, &options);
+    // The points that are tested are those of Gregory patches.
+    let culled = FrameOptions { culling: Culling::UnseenAndBacks, ..options };
+    assert_eq!(world.surface.frame_input(&camera, &culled).expect("a frame").view.cull, 0, "{name}");
+    lab.run(&mut world.surface, Spacing::FractionalEven, &camera, &culled);
     world
 }
 

@@ -1,5 +1,5 @@
 //! The two schemes that the Gregory patch paper measures itself against (Loop et al. 2009, section 5): what their vertices give to the
-//! patches around them. For closed meshes of quads without creases at irregular faces, as their papers are.
+//! patches around them. For quads alone, irregular ones away from boundaries and creases, as their papers are.
 
 use std::f64::consts::PI;
 
@@ -38,8 +38,15 @@ impl Rival {
         for &face in irregular.iter().filter(|&&face| level.is_drawn(face)) {
             for corner in level.half_edges(face) {
                 let vertex = level.origin(corner);
-                let sector = sector_of(level, corner);
-                if !level.tag(vertex).is_plain() || !sector.is_closed {
+                let (sector, tag) = (sector_of(level, corner), level.tag(vertex));
+                if tag.is_corner() {
+                    return refuse(face, format!("has a sharp vertex {vertex}"));
+                }
+                // A hole counts: it is no patch, but its points are those of the patches beside it.
+                if !tag.touches_only_quads() {
+                    return refuse(face, format!("touches a face of other than four sides at vertex {vertex}"));
+                }
+                if !tag.is_plain() || !sector.is_closed {
                     return refuse(face, format!("touches a boundary or crease at vertex {vertex}"));
                 }
                 if sector.spokes.len() < 3 {

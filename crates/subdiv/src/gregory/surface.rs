@@ -113,7 +113,7 @@ impl<'a> GregorySurface<'a> {
         let at = |point: u32| cage[point as usize].map(f64::from);
         let row = |row: usize, corner: usize| {
             let origin = at(face.corners[corner]);
-            ring.iter().fold([0.0; 3], |made, &[point, column]| {
+            ring.iter().filter(|[.., mask]| mask >> row & 1 != 0).fold([0.0; 3], |made, &[point, column, _]| {
                 let place = table.first_weight as usize + column as usize * ROWS_PER_CORNER * corner_count + row;
                 let weight = f64::from(stencils.weights[place]);
                 sum([(1.0, made), (weight, at(point)), (-weight, origin)])

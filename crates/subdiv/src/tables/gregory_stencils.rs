@@ -60,8 +60,8 @@ impl StencilFace {
 pub struct GregoryStencils {
     /// As many as irregular faces; none if they were not asked for.
     pub faces: Vec<StencilFace>,
-    /// Of each face its points in ascending order, and their columns.
-    pub rings: Vec<[u32; 2]>,
+    /// Of each face its points in ascending order, their columns, and a mask of the rows that have a weight there, row i being bit i.
+    pub rings: Vec<[u32; 3]>,
     /// The tables.
     pub connectivities: Vec<Connectivity>,
     /// Their weights.
@@ -93,7 +93,7 @@ impl GregoryStencils {
     /// the other's tables.
     pub(super) fn append_tables(&mut self, other: &Self, points: &[u32]) -> (u32, Vec<u32>) {
         let first = self.rings.len() as u32;
-        self.rings.extend(other.rings.iter().map(|&[point, column]| [points[point as usize], column]));
+        self.rings.extend(other.rings.iter().map(|&[point, column, mask]| [points[point as usize], column, mask]));
         let places = other.connectivities.iter().map(|table| {
             let row_count = table.corner_count as usize * ROWS_PER_CORNER;
             let weights = &other.weights[table.first_weight as usize..][..row_count * table.point_count as usize];
@@ -256,7 +256,11 @@ impl Columns {
         let mut sorted: Vec<(&[u32; MAX_ROWS], u32)> =
             self.of_point.iter().map(|(&point, column)| (column, point)).collect();
         sorted.sort_unstable();
-        let mut ring: Vec<[u32; 2]> = (0..).zip(&sorted).map(|(column, &(_, point))| [point, column]).collect();
+        let mask = |weights: &[u32; MAX_ROWS]| {
+            (0..MAX_ROWS).fold(0_u32, |mask, row| mask | u32::from(weights[row] != 0) << row)
+        };
+        let mut ring: Vec<[u32; 3]> =
+            (0..).zip(&sorted).map(|(column, &(weights, point))| [point, column, mask(weights)]).collect();
         ring.sort_unstable();
         table.rings.extend(ring);
         table.intern(self.rows, sorted.iter().flat_map(|(column, _)| column[..self.rows].iter().copied()).collect())

@@ -161,7 +161,11 @@ fn derivatives_are_those_of_the_patch() {
 fn cages_without_a_patch_are_refused_by_face() {
     let mut creased = cube();
     creased.creases.push(planish_subdiv::mesh::Crease { vertices: [0, 1], sharpness: 2.0 });
-    let mut cages = vec![prism(5), prism(3), creased];
+    let mut sharpened = cube();
+    sharpened.corners.push(planish_subdiv::mesh::Corner { vertex: 0, sharpness: 10.0 });
+    let mut holed = prism(5);
+    holed.holes = vec![0, 1];
+    let mut cages = vec![prism(5), prism(3), creased, sharpened, holed];
     // The middle of a pole with one ring is beside the boundary.
     cages.push(pole(5, 1));
     for mesh in cages {
