@@ -40,8 +40,8 @@ impl FrameStages {
     }
 
     /// Records: cages to points, density, select, subdivide, limit, spokes of Gregory patches, emit. Takes the times `start`,
-    /// `density`, `select`, `subdivide`, `limit` (spokes are part of it) and `emit`; uniform refinement has no density, select and emit. How the frame is seen, selected and
-    /// culled is what [`Surface::set_frame`] said last when it runs.
+    /// `density`, `select`, `subdivide`, `limit` (spokes are part of it) and `emit`; uniform refinement has no density, select
+    /// and emit. How the frame is seen, selected and culled is what [`Surface::set_frame`] said last when it runs.
     ///
     /// # Panics
     /// If these are stages for other surfaces: with Gregory patches where it has none, or the other way round, or with other control
