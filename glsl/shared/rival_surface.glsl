@@ -24,7 +24,7 @@ void share_point(Seam seam, vec3 curve[4], vec3 along[3], Parameter u, Parameter
     bernstein(seam.at.t, seam.at.s, n, d);
     position = weigh_ends(curve[0], curve[1], curve[2], curve[3], n);
     normal = edge_normal(along[0], along[1], along[2], across, seam.at);
-    vec3 border_normal;
+    vec3 border_normal = normal;
     share_border(seam, u, v, position, normal, border_normal);
     share_corner(seam.limit, position, normal);
     position = without_sign_of_zero(position);

@@ -18,7 +18,7 @@ pub const CLOSED: [&str; 6] =
 pub const OPEN: [&str; 6] =
     ["boundary_valences", "boundary_none", "boundary_edge_only", "open_cylinder", "grid_8x8", "far_from_origin"];
 /// Ways to tessellate: aligned rows, rings that are skewed, factors of 1.
-const WAYS: [(Spacing, f32); 5] = [
+pub const WAYS: [(Spacing, f32); 5] = [
     (Spacing::Equal, 1.0),
     (Spacing::Equal, 8.0),
     (Spacing::Equal, 4.7),

@@ -9,7 +9,7 @@ use planish_render::{
 use planish_subdiv::ControlMesh;
 use planish_subdiv::refine::CreasePatches;
 
-use crate::culling::{CLOSED, EYES, OPEN, Tally, check_left_out, options, triangles};
+use crate::culling::{CLOSED, EYES, OPEN, Tally, WAYS, check_left_out, options, triangles};
 use crate::gregory::DESC;
 use crate::lab::{Easel, Lab, SPACINGS};
 use crate::world::{World, scene};
@@ -25,14 +25,6 @@ const MORE: [(&str, bool); 8] = [
     ("dart_extraordinary", false),
     ("crease_infinite_extraordinary", false),
 ];
-const WAYS: [(Spacing, f32); 5] = [
-    (Spacing::Equal, 1.0),
-    (Spacing::Equal, 8.0),
-    (Spacing::Equal, 4.7),
-    (Spacing::FractionalOdd, 5.3),
-    (Spacing::FractionalEven, 3.4),
-];
-
 fn scenes() -> impl Iterator<Item = (&'static str, bool)> {
     let closed = CLOSED.into_iter().map(|name| (name, true));
     closed.chain(OPEN.into_iter().map(|name| (name, false))).chain(MORE)
