@@ -1,5 +1,5 @@
 #version 460
-// variants: lean=LEAN layers=LAYERS colors=LAYERS,COLORS dump=DUMP lean_maps=LEAN,MAPS layers_maps=LAYERS,MAPS colors_maps=LAYERS,COLORS,MAPS dump_maps=DUMP,MAPS
+// variants: lean=LEAN layers=LAYERS colors=LAYERS,COLORS shading=SHADING dump=DUMP lean_maps=LEAN,MAPS layers_maps=LAYERS,MAPS colors_maps=LAYERS,COLORS,MAPS shading_maps=SHADING,MAPS dump_maps=DUMP,MAPS
 // Regular and transition patches: evaluates the bicubic B-spline (FAS section 5.1).
 #extension GL_GOOGLE_include_directive : require
 #include "shared/spacing.glsl"
@@ -8,6 +8,7 @@
 #include "shared/seams.glsl"
 #include "shared/tex_tree.glsl"
 #include "shared/colors.glsl"
+#include "shared/motion.glsl"
 #include "shared/surface.glsl"
 
 layout(constant_id = 1) const bool TRANSITION = false;
@@ -197,7 +198,7 @@ Evaluated evaluate(Parameter u, Parameter v, PatchInfo info)
 #include "shared/bspline_displacement.glsl"
 #endif
 
-#if defined(COLORS) || defined(DUMP)
+#if defined(COLORS) || defined(SHADING) || defined(DUMP)
 // The colour of a point, by the weights of its position; `uv` is its place in its Ptex face.
 vec3 point_color(Evaluated point, uint ptex_face, vec2 uv)
 {
@@ -216,6 +217,25 @@ vec3 point_color(Evaluated point, uint ptex_face, vec2 uv)
         result = varying_color(scene, object, ptex_face - object.first_face, uv);
     }
     return result;
+}
+#endif
+
+#if defined(COLORS)
+// Where a point is at the next moment: by the weights of its position now.
+vec3 next_position(Evaluated point)
+{
+    SceneTables scene = push.frame.v.scene;
+    Object object = scene.v.objects.v[patch_places.y];
+    vec3 result = point.position;
+    for (bool is_open = (object.flags & OBJECT_DEFORMS) != 0u && point.limit == NONE; is_open; is_open = false) {
+        vec3 p[16];
+        uint boundary = patch_boundary(push.patches.v[point.place].info);
+        [[dont_unroll]] for (uint i = 0u; i < 16u; ++i) {
+            p[i] = control_point_of(push.patches, scene.v.next_points, point.place, i, boundary);
+        }
+        result = patch_position(p, point.nu, point.nv);
+    }
+    return point.limit == NONE ? moved_on(object, result) : next_limit(scene, object, point.limit, result);
 }
 #endif
 
@@ -238,7 +258,7 @@ void main()
     TexPoints tex = tex_points(point, u, v, is_decided_across(point));
     st = tex.own;
     shading_normal = displace(point, tex);
-#elif defined(DUMP)
+#elif defined(SHADING) || defined(DUMP) || defined(COLORS)
     if (TEX_COORDS) {
         SceneTables scene = push.frame.v.scene;
         Object object = scene.v.objects.v[patch_places.y];
@@ -247,9 +267,15 @@ void main()
 #endif
     put_surface_point(point.position, point.normal, shading_normal, vec2(u.t, v.t), st, info, patch_words.w,
                       patch_transition(info) != 0u ? KIND_TRANSITION : KIND_REGULAR, shown_factor());
-#if defined(COLORS) || defined(DUMP)
+    put_object(patch_places.y);
+#if defined(COLORS) || defined(SHADING) || defined(DUMP)
     if (COLORED) {
         put_color(point_color(point, info.ptex_face, ptex_uv(info, vec2(u.t, v.t))));
+    }
+#endif
+#if defined(COLORS)
+    if (MOVING) {
+        put_next_position(next_position(point));
     }
 #endif
 }

@@ -1,9 +1,10 @@
 #version 460
-// variants: lean=LEAN layers=LAYERS colors=LAYERS,COLORS dump=DUMP
+// variants: lean=LEAN layers=LAYERS colors=LAYERS,COLORS shading=SHADING dump=DUMP
 // Patch-filling quads: every tessellated point is a limit point.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/surface.glsl"
 #include "shared/colors.glsl"
+#include "shared/motion.glsl"
 
 layout(quads, equal_spacing, ccw) in;
 layout(location = 0) in vec3 limit_position[];
@@ -19,15 +20,19 @@ const uint PLACES[9] = uint[9](0, 4, 1, 7, 0, 5, 3, 6, 2);
 const vec2 UVS[8] = vec2[8](vec2(0.0, 0.0), vec2(1.0, 0.0), vec2(1.0, 1.0), vec2(0.0, 1.0), vec2(0.5, 0.0), vec2(1.0, 0.5),
                             vec2(0.5, 1.0), vec2(0.0, 0.5));
 
-// The colour of one of the points. Of edges that are not split no middle is looked at.
+// The limit point that one of the points is. Of edges that are not split no middle is looked at.
+uint limit_of(uint place)
+{
+    IrregularFaces faces = IrregularFaces(push.patches);
+    uint face = (patch_words.w & ~PATCH_MIRRORED) - push.first_patch_id;
+    return place < 4u ? faces.v[face].limits[place] : faces.v[face].midpoints[place - 4u];
+}
+
 vec3 point_color(uint place, PatchInfo info)
 {
     SceneTables scene = push.frame.v.scene;
     Object object = scene.v.objects.v[fan_and_object.y];
-    IrregularFaces faces = IrregularFaces(push.patches);
-    uint face = (patch_words.w & ~PATCH_MIRRORED) - push.first_patch_id;
-    uint limit = place < 4u ? faces.v[face].limits[place] : faces.v[face].midpoints[place - 4u];
-    return limit_color(scene, object, limit, info.ptex_face - object.first_face, ptex_uv(info, UVS[place]));
+    return limit_color(scene, object, limit_of(place), info.ptex_face - object.first_face, ptex_uv(info, UVS[place]));
 }
 
 void main()
@@ -38,7 +43,12 @@ void main()
     vec2 st = TEX_COORDS ? tex_coord[place] : vec2(0.0);
     PatchInfo info = PatchInfo(patch_words.x, patch_words.y, patch_words.z);
     put_surface_point(limit_position[place], limit_normal[place], shading, UVS[place], st, info, patch_words.w, KIND_FILLING, 1.0);
+    put_object(fan_and_object.y);
     if (COLORED) {
         put_color(point_color(place, info));
+    }
+    if (MOVING) {
+        SceneTables scene = push.frame.v.scene;
+        put_next_position(next_limit(scene, scene.v.objects.v[fan_and_object.y], limit_of(place), limit_position[place]));
     }
 }

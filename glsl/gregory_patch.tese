@@ -1,5 +1,5 @@
 #version 460
-// variants: lean=LEAN layers=LAYERS colors=LAYERS,COLORS dump=DUMP lean_maps=LEAN,MAPS layers_maps=LAYERS,MAPS colors_maps=LAYERS,COLORS,MAPS dump_maps=DUMP,MAPS
+// variants: lean=LEAN layers=LAYERS colors=LAYERS,COLORS shading=SHADING dump=DUMP lean_maps=LEAN,MAPS layers_maps=LAYERS,MAPS colors_maps=LAYERS,COLORS,MAPS shading_maps=SHADING,MAPS dump_maps=DUMP,MAPS
 // Gregory patches: quads of 20 points and triangles of 15, in their Bezier form (Loop et al. 2009, sections 3.1 and 4.4). A triangle
 // is drawn as three quads, the Ptex faces of its corners.
 #extension GL_GOOGLE_include_directive : require
@@ -7,6 +7,7 @@
 #include "shared/seams.glsl"
 #include "shared/tex_tree.glsl"
 #include "shared/colors.glsl"
+#include "shared/motion.glsl"
 #include "shared/surface.glsl"
 
 layout(constant_id = 3) const bool CUT = false;        // each is a piece of a patch
@@ -34,7 +35,7 @@ layout(location = 10) in vec3 curve_across[];
 #include "shared/gregory_displacement.glsl"
 #endif
 #include "shared/gregory_triangle.glsl"
-#if defined(COLORS) || defined(DUMP)
+#if defined(COLORS) || defined(SHADING) || defined(DUMP)
 #include "shared/gregory_colors.glsl"
 #endif
 
@@ -202,7 +203,7 @@ void main()
     shading_normal = displace(is_on, seam, u, v, info.ptex_face - first_face, along_u, along_v, border_normal, position, normal);
 #endif
     vec2 st = vec2(0.0);
-#if defined(DUMP)
+#if defined(SHADING) || defined(DUMP) || defined(COLORS)
     if (TEX_COORDS) {
         SceneTables scene = push.frame.v.scene;
         Object object = scene.v.objects.v[patch_places.y];
@@ -213,9 +214,13 @@ void main()
     info.flags -= TRIANGLE ? 1u << 5 : 0u;
     put_surface_point(position, normal, shading_normal, vec2(u.t, v.t), st, info, patch_words.w,
                       TRIANGLE ? KIND_GREGORY_TRIANGLE : KIND_GREGORY_QUAD, shown_factor());
-#if defined(COLORS) || defined(DUMP)
+    put_object(patch_places.y);
+#if defined(COLORS) || defined(SHADING) || defined(DUMP)
     if (COLORED) {
         put_color(point_color(u, v, info));
     }
 #endif
+    if (MOVING) {
+        put_next_position(moved_on(push.frame.v.scene.v.objects.v[patch_places.y], position));
+    }
 }

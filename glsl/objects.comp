@@ -10,6 +10,53 @@ layout(push_constant, scalar) uniform Push {
 
 shared uint first_chunk[4];
 shared uint chunk_counts[4];
+shared vec3 lows[gl_WorkGroupSize.x];
+shared vec3 highs[gl_WorkGroupSize.x];
+shared float longest[gl_WorkGroupSize.x];
+
+// Length in the world of the longest edge at a vertex.
+float longest_edge(Object object, uint vertex)
+{
+    uint slot = object.first_mesh_slot + vertex;
+    vec3 a = to_world(object, push.scene.v.points.v[object.first_point + vertex]);
+    float square = 0.0;
+    for (uint i = push.scene.v.neighbour_first.v[slot]; i < push.scene.v.neighbour_first.v[slot + 1]; ++i) {
+        vec3 b = to_world(object, push.scene.v.points.v[object.first_point + push.scene.v.neighbours.v[i]]);
+        precise vec3 edge = b - a;
+        square = max(square, precise_dot(edge, edge));
+    }
+    return sqrt(square);
+}
+
+// The box around a cage that deforms and its longest edge, by all threads of the group. The edge is only asked for where objects
+// have one density.
+void measure_cage(inout Object object, bool wants_edge)
+{
+    uint thread = gl_LocalInvocationID.x;
+    vec3 low = push.scene.v.points.v[object.first_point];
+    vec3 high = low;
+    float edge = 0.0;
+    for (uint i = thread; i < object.vertex_count; i += gl_WorkGroupSize.x) {
+        vec3 p = push.scene.v.points.v[object.first_point + i];
+        low = min(low, p);
+        high = max(high, p);
+        if (wants_edge) {
+            edge = max(edge, longest_edge(object, i));
+        }
+    }
+    lows[thread] = low;
+    highs[thread] = high;
+    longest[thread] = edge;
+    barrier();
+    for (uint i = 0; i < gl_WorkGroupSize.x; ++i) {
+        low = min(low, lows[i]);
+        high = max(high, highs[i]);
+        edge = max(edge, longest[i]);
+    }
+    object.low = low;
+    object.high = high;
+    object.largest_edge = edge;
+}
 
 // Whether the box around an object lies outside of one plane of the view.
 bool is_outside(Object object, EmitView view)
@@ -30,12 +77,21 @@ void main()
         return;
     }
     Object object = push.scene.v.objects.v[index];
+    if ((object.flags & OBJECT_DEFORMS) != 0u) {
+        measure_cage(object, frame.object_lod != 0u);
+        if (gl_LocalInvocationID.x == 0u) {
+            push.scene.v.objects.v[index].low = object.low;
+            push.scene.v.objects.v[index].high = object.high;
+            push.scene.v.objects.v[index].largest_edge = object.largest_edge;
+        }
+    }
     uint counts[4] = uint[4](object.vertex_count, object.slot_count - object.vertex_count, object.root_count, object.patch_count);
     if (gl_LocalInvocationID.x < 4u) {
         uint kind = gl_LocalInvocationID.x;
         bool is_culled = frame.view.cull != 0u && (object.flags & OBJECT_IN_HULL) != 0u && is_outside(object, frame.view);
         // The static selection asks for the largest density of all, seen or not.
         bool is_needed = !is_culled || (kind <= LIST_MIDDLES && frame.selection == SELECT_STATIC);
+        is_needed = is_needed && (object.flags & OBJECT_HIDDEN) == 0u;
         uint count = is_needed ? (counts[kind] + CHUNK - 1u) / CHUNK : 0u;
         ListHeads heads = push.scene.v.heads;
         uint list = kind;

@@ -1,11 +1,12 @@
 #version 460
-// variants: lean=LEAN layers=LAYERS colors=LAYERS,COLORS dump=DUMP
+// variants: lean=LEAN layers=LAYERS colors=LAYERS,COLORS shading=SHADING dump=DUMP
 // Pm-patches of quads (Myles, Ni and Peters 2008): four quartic triangles that meet in the middle.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/gregory.glsl"
 #include "shared/seams.glsl"
 #include "shared/tex_tree.glsl"
 #include "shared/colors.glsl"
+#include "shared/motion.glsl"
 #include "shared/surface.glsl"
 
 layout(constant_id = 3) const bool CUT = false; // each is a piece of a patch

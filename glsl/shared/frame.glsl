@@ -6,6 +6,7 @@
 struct FrameData {
     SceneTables scene;
     mat4 world_to_camera; // right-handed, looking down -z
+    mat4 next_view_projection; // world to clip space at the next moment
 };
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Frame { FrameData v; };

@@ -38,18 +38,22 @@ void put_point(Parameter u, Parameter v, vec3 position, vec3 normal)
     Object object = scene.v.objects.v[patch_places.y];
     uint ptex_face = info.ptex_face - object.first_face;
     vec2 st = vec2(0.0);
-#if defined(DUMP)
+#if defined(SHADING) || defined(DUMP) || defined(COLORS)
     if (TEX_COORDS) {
         st = tree_tex_coord(scene, object, ptex_face, ptex_uv(info, vec2(u.t, v.t)));
     }
 #endif
     put_surface_point(position, normal, normal, vec2(u.t, v.t), st, info, patch_words.w, KIND_GREGORY_QUAD, shown_factor());
-#if defined(COLORS) || defined(DUMP)
+    put_object(patch_places.y);
+#if defined(COLORS) || defined(SHADING) || defined(DUMP)
     if (COLORED) {
         for (bool is_open = (object.flags & OBJECT_VARYING_COLORS) != 0u; is_open; is_open = false) {
             put_color(varying_color(scene, object, ptex_face, ptex_uv(info, vec2(u.t, v.t))));
         }
     }
 #endif
+    if (MOVING) {
+        put_next_position(moved_on(object, position));
+    }
 }
 #endif

@@ -16,6 +16,10 @@ const uint OBJECT_LINEAR_TEX_COORDS = 8;
 const uint OBJECT_VERTEX_COLORS = 16;
 // It has colours, which are bilinear in every Ptex face.
 const uint OBJECT_VARYING_COLORS = 32;
+// Its cage's points are made by `deform.comp`: what is known of them on the CPU is of another pose.
+const uint OBJECT_DEFORMS = 64;
+// It is not there in this frame.
+const uint OBJECT_HIDDEN = 128;
 
 // A mesh at a place. "First" names a place in a table of all meshes or objects.
 struct Object {
@@ -38,6 +42,7 @@ struct Object {
     uint root_count;
     uint map;             // its displacement map; NONE for none
     uint first_edge;      // edge e of the tables is bit first_edge + e of the split edges
+    mat4x3 motion;        // to the world at the next moment: of the mesh's own space where it deforms, else of the world now
 };
 
 // Density at a vertex, and the largest around it; planes of the view that the vertex, and all vertices around it, lie outside of.
@@ -201,6 +206,8 @@ struct SceneData {
     Points point_colors;      // of the points of all levels; the three tables are empty where nothing needs them
     Points limit_colors;      // of the limit points
     Points gregory_colors;    // of the control points of Gregory patches, 20 a face
+    Points next_points;       // of all levels, at the next moment; these two are empty where no motion is asked for
+    LimitPoints next_limits;
     Points slot_colors;       // of the slots of meshes: vertices, and faces of other than four sides
     LimitSeats limit_seats;
     LimitTangentTable limit_tangents;
@@ -225,6 +232,7 @@ struct SceneData {
     uint first_active[LEVEL_COUNT];
     uint mark_group_count;
     uint first_limit_mark;
+    uvec2 materials;         // address of the MaterialTables (materials.glsl), for holes in them; 0 where nothing has any
 };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer SceneTables { SceneData v; };
 
@@ -244,6 +252,8 @@ layout(constant_id = 7) const bool TEX_COORDS = false;
 layout(constant_id = 8) const bool GREGORY = false;
 // Whether colours are asked for.
 layout(constant_id = 9) const bool COLORED = false;
+// Whether it is asked where points are at the next moment.
+layout(constant_id = 13) const bool MOVING = false;
 
 vec3 to_world(Object object, vec3 p)
 {

@@ -1,7 +1,8 @@
 // What an evaluated point of the surface becomes: outputs for the beauty image, for all layers, or for a dump.
 //
 // LEAN draws the beauty image from the normal alone; every interpolated value costs triangle set-up. LAYERS carries what
-// the other layers and the debug views need, with COLORS the colour too. DUMP is captured by transform feedback.
+// the other layers and the debug views need, with COLORS the colour too. SHADING carries what materials need (gbuffer.glsl). DUMP is
+// captured by transform feedback.
 #ifndef PLANISH_SURFACE
 #define PLANISH_SURFACE
 #include "frame.glsl"
@@ -27,6 +28,12 @@ layout(location = 5, xfb_buffer = 0, xfb_offset = 48) out vec3 out_shading_norma
 layout(location = 6, xfb_buffer = 0, xfb_offset = 60) out vec3 out_color;
 #else
 layout(location = 0) out vec3 out_normal;
+#if defined(SHADING)
+layout(location = 1) out vec3 out_color;
+layout(location = 2) out vec2 out_tex_coord;
+layout(location = 3) out flat uint out_face; // Ptex face, among those of all objects
+layout(location = 4) out flat uint out_object;
+#endif
 #if defined(LAYERS)
 layout(location = 1) out vec3 out_position;
 layout(location = 2) out vec2 out_uv;
@@ -34,6 +41,8 @@ layout(location = 3) out flat uvec4 out_ids; // Ptex face, patch, level, kind
 layout(location = 4) out flat float out_factor;
 #if defined(COLORS)
 layout(location = 5) out vec3 out_color;
+layout(location = 6) out vec3 out_next_position; // at the next moment, in the world
+layout(location = 7) out vec2 out_st;
 #endif
 #endif
 #endif
@@ -56,8 +65,24 @@ const float MIRRORED_LENGTH = 1048576.0;
 // Gives the point a colour; without it is white. After put_surface_point.
 void put_color(vec3 color)
 {
-#if defined(DUMP) || defined(COLORS)
+#if defined(DUMP) || defined(COLORS) || defined(SHADING)
     out_color = color;
+#endif
+}
+
+// Says where the point is at the next moment, in the world.
+void put_next_position(vec3 position)
+{
+#if defined(COLORS)
+    out_next_position = position;
+#endif
+}
+
+// Says which object the point is of.
+void put_object(uint object)
+{
+#if defined(SHADING)
+    out_object = object;
 #endif
 }
 
@@ -68,6 +93,10 @@ void put_surface_point(vec3 position, vec3 normal, vec3 shading_normal, vec2 uv,
     bool is_mirrored = (patch_id & PATCH_MIRRORED) != 0u;
     gl_Position = push.view_projection * vec4(position, 1.0);
     put_color(vec3(1.0));
+    put_next_position(position);
+#if defined(COLORS)
+    out_st = st;
+#endif
 #if defined(DUMP)
     out_normal = is_mirrored ? -normal : normal;
     out_tex_coord = st;
@@ -77,6 +106,10 @@ void put_surface_point(vec3 position, vec3 normal, vec3 shading_normal, vec2 uv,
     out_face = uvec2(info.ptex_face, patch_level(info) | kind << 8);
 #else
     out_normal = is_mirrored ? -MIRRORED_LENGTH * shading_normal : shading_normal;
+#if defined(SHADING)
+    out_tex_coord = st;
+    out_face = info.ptex_face;
+#endif
 #if defined(LAYERS)
     out_position = position;
     out_uv = ptex_uv(info, uv);

@@ -12,6 +12,8 @@ pub type Matrix = [f32; 16];
 pub struct Layers {
     /// Width and height.
     pub size: [usize; 2],
+    /// Where its data window begins in the whole image.
+    pub position: [i32; 2],
     /// To the camera's space: x right, y up, z forwards.
     pub world_to_camera: Matrix,
     /// To the image: (0, 0) upper left, (1, 1) lower right.
@@ -30,6 +32,7 @@ impl Layers {
         let channels = layer.channel_data.list.into_iter();
         Self {
             size: [layer.size.x(), layer.size.y()],
+            position: [attributes.layer_position.x(), attributes.layer_position.y()],
             world_to_camera: attributes.world_to_camera.expect("the header has worldToCamera"),
             world_to_ndc: attributes.world_to_normalized_device.expect("the header has worldToNDC"),
             software: attributes.software_name.expect("the header has software").to_string(),

@@ -6,6 +6,7 @@
 //! | `program` | running `planish` and judging how it ended |
 //! | `parallel` | many independent checks on all cores, all failures told |
 //! | `cage` | a mesh file's faces: Ptex numbering, boundary |
+//! | `export` | cages to files of other formats |
 //! | `ply` | dumps, read and thinned out |
 //! | `oracle` | a dump against OpenSubdiv's limit surface |
 //! | `judge` | a dump judged as a whole |
@@ -16,6 +17,7 @@
 //! | `golden` | images against committed ones |
 
 pub mod cage;
+pub mod export;
 pub mod folder;
 pub mod golden;
 pub mod judge;

@@ -2,7 +2,6 @@
 
 use std::str::FromStr;
 
-use anyhow::bail;
 use planish_film::Layer;
 use planish_render::{Layers, NO_SURFACE};
 
@@ -30,11 +29,26 @@ pub enum Aov {
     Tess,
     /// Colour of vertices.
     Color,
+    /// Texture coordinates of the mesh's first channel.
+    TexCoord,
+    /// Instance, counted through all.
+    Object,
+    /// Where the point goes until the next frame, in pixels to the right and down.
+    Motion,
+    /// Cryptomatte of instances.
+    CryptoObject,
+    /// Cryptomatte of materials.
+    CryptoMaterial,
 }
 
 impl Aov {
+    /// Whether it is a Cryptomatte.
+    pub fn is_matte(self) -> bool {
+        matches!(self, Self::CryptoObject | Self::CryptoMaterial)
+    }
+
     /// Every layer with its name.
-    const NAMES: [(&'static str, Self); 9] = [
+    const NAMES: [(&'static str, Self); 14] = [
         ("z", Self::Depth),
         ("n", Self::Normal),
         ("p", Self::Position),
@@ -44,26 +58,24 @@ impl Aov {
         ("level", Self::Level),
         ("tess", Self::Tess),
         ("color", Self::Color),
+        ("st", Self::TexCoord),
+        ("object", Self::Object),
+        ("motion", Self::Motion),
+        ("crypto_object", Self::CryptoObject),
+        ("crypto_material", Self::CryptoMaterial),
     ];
-
-    /// Layers of the interface that do not exist yet.
-    const TO_COME: [&'static str; 2] = ["object", "motion"];
 }
 
 /// Comma-separated names of layers, each once.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct AovList {
     aovs: Vec<Aov>,
-    to_come: Option<String>,
 }
 
 impl AovList {
-    /// The layers asked for; refused where one does not exist yet.
-    pub fn available(&self) -> anyhow::Result<&[Aov]> {
-        match &self.to_come {
-            Some(name) => bail!("layer {name} is not available yet (available: {})", known_names()),
-            None => Ok(&self.aovs),
-        }
+    /// The layers asked for.
+    pub fn aovs(&self) -> &[Aov] {
+        &self.aovs
     }
 }
 
@@ -77,10 +89,6 @@ impl FromStr for AovList {
     fn from_str(text: &str) -> Result<Self, String> {
         let mut list = Self::default();
         for name in text.split(',').map(|name| name.trim().to_lowercase()).filter(|name| !name.is_empty()) {
-            if Aov::TO_COME.contains(&name.as_str()) {
-                list.to_come = Some(name);
-                continue;
-            }
             let found = Aov::NAMES.iter().find(|(known, _)| *known == name);
             let &(_, aov) = found.ok_or_else(|| format!("layer {name} is unknown (known: {})", known_names()))?;
             if !list.aovs.contains(&aov) {
@@ -102,12 +110,18 @@ pub struct PackedLayers {
     pub ids: Vec<[u32; 4]>,
     /// Colours of vertices; empty unless they were drawn.
     pub colors: Vec<[f32; 4]>,
+    /// Motion in pixels, and texture coordinates; likewise.
+    pub motion_st: Vec<[f32; 4]>,
+    /// The first Ptex face of each object.
+    pub first_faces: Vec<u32>,
 }
 
 impl PackedLayers {
-    /// The layer of an AOV. Where there is no surface floats are 0, but the depth is infinite, and ids are `u32::MAX`.
-    pub fn layer(&self, aov: Aov) -> Layer {
-        match aov {
+    /// The layer of an AOV; none of a Cryptomatte, which is of all samples. Where there is no surface floats are 0, but the depth is
+    /// infinite, and ids are `u32::MAX`.
+    pub fn layer(&self, aov: Aov) -> Option<Layer> {
+        Some(match aov {
+            Aov::CryptoObject | Aov::CryptoMaterial => return None,
             Aov::Depth => Layer::float("Z", &[], self.depths()),
             Aov::Normal => Layer::float("N", &["X", "Y", "Z"], vectors(&self.normal_depth)),
             Aov::Position => Layer::float("P", &["X", "Y", "Z"], vectors(&self.position_factor)),
@@ -121,7 +135,19 @@ impl PackedLayers {
             Aov::Level => self.ids_as("level", |id| id[1] >> PATCH_BITS),
             Aov::Tess => Layer::float("tess", &[], self.position_factor.iter().map(|pixel| pixel[3]).collect()),
             Aov::Color => Layer::float("color", &["R", "G", "B"], vectors(&self.colors)),
-        }
+            Aov::TexCoord => {
+                Layer::float("st", &["x", "y"], self.motion_st.iter().flat_map(|&[_, _, s, t]| [s, t]).collect())
+            }
+            Aov::Motion => {
+                Layer::float("motion", &["x", "y"], self.motion_st.iter().flat_map(|&[x, y, ..]| [x, y]).collect())
+            }
+            Aov::Object => self.ids_as("object", |id| self.object_of(id[0])),
+        })
+    }
+
+    /// The object that has a Ptex face: the last that begins with it or before, of those that have faces at all.
+    fn object_of(&self, ptex_face: u32) -> u32 {
+        (self.first_faces.partition_point(|&first| first <= ptex_face).max(1) - 1) as u32
     }
 
     fn depths(&self) -> Vec<f32> {
@@ -138,8 +164,10 @@ impl PackedLayers {
 /// What must be drawn for these layers.
 pub fn drawn_layers(aovs: &[Aov]) -> Layers {
     match aovs {
-        [] => Layers::None,
-        aovs if aovs.contains(&Aov::Color) => Layers::GeometryAndColors,
+        aovs if aovs.iter().all(|aov| aov.is_matte()) => Layers::None,
+        aovs if aovs.iter().any(|aov| [Aov::Color, Aov::TexCoord, Aov::Motion].contains(aov)) => {
+            Layers::GeometryAndColors
+        }
         _ => Layers::Geometry,
     }
 }
@@ -159,22 +187,19 @@ mod tests {
 
     #[test]
     fn lists_are_names_in_any_case_each_once() {
-        assert_eq!(parse("").unwrap().available().unwrap(), []);
-        assert_eq!(parse("Z,n, uv,z").unwrap().available().unwrap(), [Aov::Depth, Aov::Normal, Aov::Uv]);
-        let all = parse("z,n,p,uv,face,patch,level,tess,color").unwrap();
-        assert_eq!(all.available().unwrap(), Aov::NAMES.map(|(_, aov)| aov));
+        assert_eq!(parse("").unwrap().aovs().to_owned(), []);
+        assert_eq!(parse("Z,n, uv,z").unwrap().aovs().to_owned(), [Aov::Depth, Aov::Normal, Aov::Uv]);
+        let all = parse("z,n,p,uv,face,patch,level,tess,color,st,object,motion,crypto_object,crypto_material").unwrap();
+        assert_eq!(all.aovs(), Aov::NAMES.map(|(_, aov)| aov));
     }
 
     #[test]
     fn unknown_names_are_refused_with_the_known_ones() {
         let message = parse("z,albedo").unwrap_err();
-        assert_eq!(message, "layer albedo is unknown (known: z, n, p, uv, face, patch, level, tess, color)");
-    }
-
-    #[test]
-    fn names_to_come_are_refused_when_asked_for() {
-        let message = parse("z,motion").unwrap().available().unwrap_err().to_string();
-        assert!(message.starts_with("layer motion is not available yet"), "{message}");
+        assert_eq!(
+            message,
+            "layer albedo is unknown (known: z, n, p, uv, face, patch, level, tess, color, st, object, motion, crypto_object, crypto_material)"
+        );
     }
 
     /// A pixel with a surface and one without.
@@ -184,19 +209,22 @@ mod tests {
             position_factor: vec![[1.0, 2.0, 3.0, 16.0], [0.0; 4]],
             ids: vec![[5, 3 << PATCH_BITS | 99, 0.25_f32.to_bits(), 0.75_f32.to_bits()], [NO_SURFACE; 4]],
             colors: vec![[2.0, -0.5, 0.25, 1.0], [0.0; 4]],
+            motion_st: vec![[1.5, -2.5, 0.1, 0.2], [0.0; 4]],
+            first_faces: vec![0, 4, 4, 6],
         }
     }
 
     #[test]
     fn no_more_is_drawn_than_layers_need() {
         assert_eq!(drawn_layers(&[]), Layers::None);
+        assert_eq!(drawn_layers(&[Aov::CryptoObject]), Layers::None);
         assert_eq!(drawn_layers(&[Aov::Depth, Aov::Uv]), Layers::Geometry);
         assert_eq!(drawn_layers(&[Aov::Depth, Aov::Color]), Layers::GeometryAndColors);
     }
 
     #[test]
     fn layers_unpack_what_the_device_packs() {
-        let samples = |aov| packed().layer(aov).samples;
+        let samples = |aov| packed().layer(aov).unwrap().samples;
         assert_eq!(samples(Aov::Depth), Samples::Float(vec![7.0, f32::INFINITY]));
         assert_eq!(samples(Aov::Normal), Samples::Float(vec![0.0, 0.6, 0.8, 0.0, 0.0, 0.0]));
         assert_eq!(samples(Aov::Position), Samples::Float(vec![1.0, 2.0, 3.0, 0.0, 0.0, 0.0]));
@@ -206,13 +234,17 @@ mod tests {
         assert_eq!(samples(Aov::Level), Samples::Uint(vec![3, u32::MAX]));
         assert_eq!(samples(Aov::Tess), Samples::Float(vec![16.0, 0.0]));
         assert_eq!(samples(Aov::Color), Samples::Float(vec![2.0, -0.5, 0.25, 0.0, 0.0, 0.0]));
+        assert_eq!(samples(Aov::TexCoord), Samples::Float(vec![0.1, 0.2, 0.0, 0.0]));
+        assert_eq!(samples(Aov::Motion), Samples::Float(vec![1.5, -2.5, 0.0, 0.0]));
+        // Object 1 has no faces.
+        assert_eq!(samples(Aov::Object), Samples::Uint(vec![2, u32::MAX]));
     }
 
     #[test]
     fn channels_have_the_interface_s_names() {
-        let names = |aov| packed().layer(aov).channel_names().join(" ");
+        let names = |aov| packed().layer(aov).unwrap().channel_names().join(" ");
         assert_eq!(
-            Aov::NAMES.map(|(_, aov)| names(aov)),
+            Aov::NAMES.map(|(_, aov)| aov).into_iter().filter(|aov| !aov.is_matte()).map(names).collect::<Vec<_>>(),
             [
                 "Z",
                 "N.X N.Y N.Z",
@@ -222,7 +254,10 @@ mod tests {
                 "patch",
                 "level",
                 "tess",
-                "color.R color.G color.B"
+                "color.R color.G color.B",
+                "st.x st.y",
+                "object",
+                "motion.x motion.y"
             ]
         );
     }

@@ -7,14 +7,16 @@ use anyhow::{Result, bail};
 use clap::builder::RangedU64ValueParser;
 use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
+use planish_film::{Compression, ToneMap};
 use planish_gpu::DeviceOptions;
 use planish_render::{Density, SurfaceMethod};
+use planish_scene::LoadOptions;
 
 use crate::aov::AovList;
 use crate::frames::FrameRange;
 use crate::names::{
-    CreasePatchesName, DisplacementKindName, DisplacementLayoutName, EndCapName, GregoryNormalsName, GregoryPointsName,
-    LodName, MethodName, MetricName, SchemeName, SpacingName, ViewName, name_of,
+    CreasePatchesName, DisplacementKindName, DisplacementLayoutName, EndCapName, FilterName, GregoryNormalsName,
+    GregoryPointsName, LodName, MethodName, MetricName, SchemeName, SpacingName, ViewName, name_of,
 };
 use crate::values::{self, FrameRate, MAX_LEVEL};
 
@@ -81,15 +83,30 @@ pub struct RenderArguments {
     pub displacement: DisplacementArguments,
     #[command(flatten)]
     pub view: ViewArguments,
-    /// Samples a pixel, averaged
+    /// Samples a pixel, each a whole frame
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = RangedU64ValueParser::<u32>::new().range(1..=MAX_SAMPLES))]
     pub samples: u32,
-    /// Extra layers of EXR files: z, n, p, uv, face, patch, level, tess, color (of vertices); always of one sample at the pixel's centre
+    #[command(flatten)]
+    pub sampling: SamplingArguments,
+    /// Extra layers of EXR files: z, n, p, uv, st, face, patch, level, tess, object, motion (to the next frame, in pixels), color (of vertices), each of one sample at the pixel's centre; crypto_object, crypto_material, of all samples
     #[arg(long, value_name = "LIST", default_value = "", hide_default_value = true)]
     pub aov: AovList,
     /// What the beauty image shows
     #[arg(long = "view", value_name = "VIEW", value_enum, default_value_t = ViewName::Shaded)]
     pub shown: ViewName,
+    #[command(flatten)]
+    pub light: LightArguments,
+    #[command(flatten)]
+    pub output: OutputArguments,
+    /// Draw a part of the image alone: left and top, and size, in pixels; the data window of EXR files, all of a PNG
+    #[arg(long, value_name = "X,Y,WxH", value_parser = values::crop)]
+    pub crop: Option<[u32; 4]>,
+    /// Leave frames alone whose files are there and whole
+    #[arg(long)]
+    pub skip_existing: bool,
+    /// Go on with the next frame where one fails; the exit status tells
+    #[arg(long)]
+    pub continue_on_error: bool,
     #[command(flatten)]
     pub frames: FrameArguments,
     #[command(flatten)]
@@ -243,12 +260,30 @@ pub struct BenchArguments {
 /// Which file, and how it is read.
 #[derive(Debug, Args)]
 pub struct SceneArguments {
-    /// Scene file, .obj or .json
+    /// Scene file: .obj, .json, .gltf, .glb, .usda, .usdc, .usd
     #[arg(value_name = "SCENE")]
     pub path: PathBuf,
     /// Drop degenerate faces (a vertex twice, fewer than three) with a warning, instead of refusing the file
     #[arg(long)]
     pub repair: bool,
+    /// Animation of a glTF file that has several [default: its first]
+    #[arg(long, value_name = "NAME")]
+    pub clip: Option<String>,
+    /// Make quads of pairs of triangles of glTF files that have nothing else, where they are good ones
+    #[arg(long)]
+    pub quads: bool,
+}
+
+impl SceneArguments {
+    /// A file without options.
+    pub fn plain(path: PathBuf, repair: bool) -> Self {
+        Self { path, repair, clip: None, quads: false }
+    }
+
+    /// As the readers want it.
+    pub fn load_options(&self) -> LoadOptions {
+        LoadOptions { repair: self.repair, clip: self.clip.clone(), quads: self.quads }
+    }
 }
 
 /// How the surface is evaluated.
@@ -380,9 +415,9 @@ pub struct FrameArguments {
     /// Frames A, A-B, A-BxS, A:B or A:BxS; of several, OUT holds #### where the number goes
     #[arg(long, value_name = "RANGE", allow_hyphen_values = true)]
     pub frames: Option<FrameRange>,
-    /// Frames a second
-    #[arg(long, value_name = "F", default_value = "24", value_parser = values::frame_rate)]
-    pub fps: FrameRate,
+    /// Frames a second [default: the scene's, else 24]
+    #[arg(long, value_name = "F", value_parser = values::frame_rate)]
+    pub fps: Option<FrameRate>,
     /// Draw what culling would leave out; dump never culls
     #[arg(long)]
     pub no_cull: bool,
@@ -394,11 +429,58 @@ pub struct FrameArguments {
     pub repeat: Option<u32>,
 }
 
-impl FrameArguments {
-    /// The frames asked for; without a range the current one, 0.
-    pub fn range(&self) -> FrameRange {
-        self.frames.unwrap_or(FrameRange::single(0))
-    }
+/// What lights a scene.
+#[derive(Debug, Args)]
+pub struct LightArguments {
+    /// Image of all around, in latitude and longitude, .exr or .hdr, instead of the scene's
+    #[arg(long, value_name = "FILE")]
+    pub environment: Option<PathBuf>,
+    /// Turns it about the y axis, in degrees, counter-clockwise seen from above
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, value_parser = values::finite, allow_hyphen_values = true, requires = "environment")]
+    pub environment_rotation: f64,
+    /// Makes it brighter, in stops
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = values::stops, allow_hyphen_values = true, requires = "environment")]
+    pub environment_exposure: f32,
+    /// Texels of the side of a light's shadow map
+    #[arg(long, value_name = "N", default_value_t = 2048, value_parser = RangedU64ValueParser::<u32>::new().range(16..=8192))]
+    pub shadow_map_size: u32,
+    /// It is seen behind the scene, where the alpha is 0
+    #[arg(long, requires = "environment")]
+    pub show_environment: bool,
+}
+
+/// How image files are made.
+#[derive(Debug, Args)]
+pub struct OutputArguments {
+    /// Compression of EXR files: zip, zips, piz, rle, none, dwaa or dwaa:LEVEL, which are for the colour alone
+    #[arg(long, value_name = "NAME", default_value = "zip")]
+    pub compression: Compression,
+    /// A part of EXR files for every layer, instead of layers in one part
+    #[arg(long)]
+    pub multipart: bool,
+    /// What becomes of light in PNG files: clip, neutral (Khronos PBR Neutral) or aces
+    #[arg(long, value_name = "NAME", default_value = "clip")]
+    pub tone_map: ToneMap,
+    /// Brighter PNG files, in stops
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = values::stops, allow_hyphen_values = true)]
+    pub exposure: f32,
+}
+
+/// What the samples of a pixel are drawn from.
+#[derive(Debug, Args)]
+pub struct SamplingArguments {
+    /// Filter that the samples of a pixel follow; a single sample is at its centre
+    #[arg(long, value_enum, default_value_t = FilterName::BlackmanHarris)]
+    pub filter: FilterName,
+    /// Width of the filter in pixels [default: box 1, triangle 2, gaussian 2.5, blackman-harris 2]
+    #[arg(long, value_name = "W", value_parser = values::filter_width)]
+    pub filter_width: Option<f64>,
+    /// When the shutter opens and closes, in frames from the frame's own time, over which samples are spread; one number closes it so long after [default: the camera's, else none]
+    #[arg(long, value_name = "OPEN,CLOSE", value_parser = values::shutter, allow_hyphen_values = true)]
+    pub shutter: Option<[f64; 2]>,
+    /// Everything is in focus, whatever the camera's lens
+    #[arg(long)]
+    pub no_depth_of_field: bool,
 }
 
 /// Which device.

@@ -5,23 +5,28 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
+use glam::{Affine3A, DAffine3};
 use planish_gpu::Device;
 use planish_render::{ObjectDesc, Surface};
 use planish_scene::displacement::DisplacementMap;
-use planish_scene::{Camera, LoadOptions, Scene, load};
+use planish_scene::{Camera, Environment, ImageContent, ImageSource, Pose, Scene, load};
 use planish_subdiv::ControlMesh;
 use planish_subdiv::mesh::Creasing;
 use planish_subdiv::rules::{VertexRule, is_semi_sharp, vertex_rule};
 use planish_subdiv::topology::{Level, NONE};
 use serde::Serialize;
 
-use crate::args::{DisplacementArguments, ViewArguments};
+use crate::args::{DisplacementArguments, LightArguments, SceneArguments, ViewArguments};
 use crate::console::Console;
 use crate::culling::backs_are_hidden;
 use crate::displacement::{load_maps, upload_map};
+use crate::frames::FrameRange;
+use crate::values::FrameRate;
 
 /// Vertical field of view of a camera given by its eye, in degrees.
 const DEFAULT_FOV: f32 = 45.0;
+/// Frames a second of scenes that do not say.
+const DEFAULT_FRAME_RATE: f64 = 24.0;
 
 /// A scene: meshes and their instances.
 pub struct Cage {
@@ -39,9 +44,10 @@ pub struct Cage {
 
 impl Cage {
     /// Reads a scene file; tells what is odd in it.
-    pub fn load(path: &Path, repair: bool, console: &Console) -> Result<Self> {
+    pub fn load(arguments: &SceneArguments, console: &Console) -> Result<Self> {
         let start = Instant::now();
-        let scene = load(path, &LoadOptions { repair })?;
+        let path = arguments.path.as_path();
+        let scene = load(path, &arguments.load_options())?;
         let load_ms = milliseconds(start);
         for warning in &scene.warnings {
             console.warn(format_args!("{}: {warning}", path.display()));
@@ -60,6 +66,21 @@ impl Cage {
         self.displacements = load_maps(&self.path, &self.scene, console)?;
         self.load_ms += milliseconds(start);
         Ok(())
+    }
+
+    /// Lights the scene by the environment that is asked for.
+    pub fn light(&mut self, arguments: &LightArguments) {
+        let Some(file) = &arguments.environment else { return };
+        let image = self.scene.images.len();
+        self.scene
+            .images
+            .push(ImageSource { name: file.display().to_string(), content: ImageContent::File(file.clone()) });
+        self.scene.environment = Some(Environment {
+            image: Some(image),
+            color: [arguments.environment_exposure.exp2(); 3],
+            to_world: DAffine3::from_rotation_y(arguments.environment_rotation.to_radians()),
+            is_visible: arguments.show_environment,
+        });
     }
 
     /// Whether any mesh has a displacement map.
@@ -106,18 +127,45 @@ impl Cage {
     }
 
     /// Whether a camera path is asked for.
-    pub fn follows_path(&self, view: &ViewArguments) -> bool {
+    fn follows_path(&self, view: &ViewArguments) -> bool {
         view.eye.is_none() && view.camera.as_deref().is_some_and(|name| self.scene.path(name).is_ok())
     }
 
-    /// The meshes' instances, as a camera sees them.
-    pub fn objects(&self, camera: &Camera) -> Vec<ObjectDesc> {
-        let object = |instance: &planish_scene::Instance| ObjectDesc {
+    /// Whether frames may differ.
+    pub fn is_animated(&self, view: &ViewArguments) -> bool {
+        self.follows_path(view) || self.scene.is_animated()
+    }
+
+    /// Whether any cage deforms.
+    pub fn deforms(&self) -> bool {
+        self.scene.meshes.iter().any(|mesh| mesh.deformation.is_some())
+    }
+
+    /// Whether a cage that deforms is displaced.
+    pub fn displaces_what_deforms(&self) -> bool {
+        let displaced = |mesh: usize| self.displacements.get(mesh).is_some_and(Option::is_some);
+        self.scene.meshes.iter().enumerate().any(|(mesh, of)| of.deformation.is_some() && displaced(mesh))
+    }
+
+    /// Frames a second: those asked for, else the scene's, else 24.
+    pub fn frame_rate(&self, asked: Option<FrameRate>) -> FrameRate {
+        asked.unwrap_or_else(|| FrameRate::near(self.scene.frames_per_second.unwrap_or(DEFAULT_FRAME_RATE)))
+    }
+
+    /// The frames asked for, else the scene's first.
+    pub fn frame_range(&self, asked: Option<FrameRange>, rate: FrameRate) -> FrameRange {
+        asked.unwrap_or_else(|| FrameRange::single(self.scene.time_range.map_or(0, |[first, _]| rate.frame_at(first))))
+    }
+
+    /// The meshes' instances in a pose, as a camera sees them.
+    pub fn objects(&self, camera: &Camera, pose: &Pose) -> Vec<ObjectDesc> {
+        let object = |(instance, placed): (&planish_scene::Instance, &planish_scene::InstancePose)| ObjectDesc {
             mesh: instance.mesh,
-            to_world: instance.transform,
-            hides_backs: self.hides_backs(instance, camera),
+            to_world: placed.transform,
+            hides_backs: self.hides_backs(instance.mesh, &placed.transform, camera),
+            is_hidden: !placed.is_visible,
         };
-        self.scene.instances.iter().map(object).collect()
+        self.scene.instances.iter().zip(&pose.instances).map(object).collect()
     }
 
     /// Whether a mesh has texture coordinates.
@@ -135,8 +183,8 @@ impl Cage {
         self.scene.bounds().map_or(0.0, |bounds| bounds.diagonal())
     }
 
-    /// The camera asked for, in a frame: its name may be that of a camera path.
-    pub fn camera(&self, view: &ViewArguments, frame: i32) -> Result<Camera> {
+    /// The camera asked for, so many frames after frame 0: its name may be that of a camera path.
+    pub fn camera(&self, view: &ViewArguments, rate: FrameRate, frames: f64) -> Result<Camera> {
         if let (Some(eye), Some(target)) = (view.eye, view.target) {
             let fov = view.fov.unwrap_or(DEFAULT_FOV);
             return Ok(Camera::upright("command line", eye, target, fov, self.diagonal())?);
@@ -144,8 +192,11 @@ impl Cage {
         let named = || self.path.display().to_string();
         let path = view.camera.as_deref().and_then(|name| self.scene.path(name).ok());
         let mut camera = match path {
-            Some(path) => path.camera(frame.max(0).cast_unsigned()),
-            None => self.scene.camera(view.camera.as_deref()).with_context(named)?,
+            Some(path) => path.camera_between(frames.max(0.0))?,
+            None => {
+                let camera = self.scene.camera(view.camera.as_deref()).with_context(named)?;
+                self.scene.camera_at(&camera, rate.seconds(frames)).with_context(named)?
+            }
         };
         camera.fov_y_degrees = view.fov.unwrap_or(camera.fov_y_degrees);
         Ok(camera)
@@ -157,20 +208,23 @@ impl Cage {
     }
 
     /// Whether the backs of an instance's triangles are never seen by a camera.
-    fn hides_backs(&self, instance: &planish_scene::Instance, camera: &Camera) -> bool {
+    fn hides_backs(&self, mesh_index: usize, to_world: &Affine3A, camera: &Camera) -> bool {
         // Edits move the surface out of the cage's bounding box, or make holes; where the mesh is not manifold its sides
         // may be turned against each other.
-        let mesh = &self.scene.meshes[instance.mesh].control_mesh;
-        let facts = &self.mesh_facts[instance.mesh];
+        let mesh = &self.scene.meshes[mesh_index].control_mesh;
+        let facts = &self.mesh_facts[mesh_index];
         let is_closed = facts.boundary_edges == 0 && mesh.holes.is_empty() && mesh.edits.is_empty();
         let has = |feature: &str| facts.sharp_features.contains_key(feature);
         let is_manifold = !has("non_manifold_edges") && !has("non_manifold_vertices");
         // Chaikin's rule has weights below 0 where an edge sharper than 1 becomes smooth.
         let is_within = mesh.options.creasing == Creasing::Uniform || !has("semi_sharp_edges");
-        let eye = instance.transform.inverse().transform_point3(camera.eye);
+        let eye = to_world.inverse().transform_point3(camera.eye);
         // A displaced surface may fold over, and reach out to an eye outside of the cage.
-        let is_displaced = self.displacements.get(instance.mesh).is_some_and(Option::is_some);
+        let is_displaced = self.displacements.get(mesh_index).is_some_and(Option::is_some);
+        // One that deforms may turn itself inside out, and a lens sees from beside the eye.
+        let deforms = self.scene.meshes[mesh_index].deformation.is_some() || camera.lens.is_some();
         !is_displaced
+            && !deforms
             && is_closed
             && is_manifold
             && is_within

@@ -5,30 +5,35 @@ use std::sync::mpsc::sync_channel;
 use std::time::Instant;
 
 use anyhow::{Result, anyhow};
+use glam::Vec3;
 use planish_film::{DumpProperties, DumpVertex, check_dump_output, write_ply_stream};
-use planish_render::{CapturedVertex, DumpPasses};
+use planish_render::{CapturedVertex, Density, DumpPasses};
+use planish_scene::Camera;
 
 use crate::args::DumpArguments;
 use crate::cage::{Cage, milliseconds};
 use crate::console::Console;
 use crate::frames::frame_path;
-use crate::offline::{Drawn, Plan, Session, check_validation, frame_camera, open_device};
+use crate::moment::Moment;
+use crate::offline::{Drawn, Plan, Session, check_validation, open_device};
 use crate::render::check_placeholder;
 use crate::stats::{FrameStats, Stats, StatsOutput};
+use crate::values::FrameRate;
 
 /// Captured parts that may wait for the disk.
 const QUEUED_PARTS: usize = 2;
 
 /// Runs the command.
 pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
-    let mut cage = Cage::load(&arguments.scene.path, arguments.scene.repair, console)?;
+    let mut cage = Cage::load(&arguments.scene, console)?;
     cage.displace(&arguments.displacement, console)?;
-    let range = arguments.frames.range();
+    let rate = cage.frame_rate(arguments.frames.fps);
+    let range = cage.frame_range(arguments.frames.frames, rate);
     check_placeholder(&arguments.output, range)?;
     check_dump_output(&frame_path(&arguments.output, range.frames().next().unwrap_or_default()))?;
     let stats_output = StatsOutput(arguments.frames.stats.as_ref());
     stats_output.check([arguments.output.as_path()].into_iter())?;
-    let plan = Plan::unseen(&cage, &arguments.surface, &arguments.view, range)?;
+    let plan = Plan::unseen(&cage, &arguments.surface, &arguments.view, rate, range)?;
     let device = open_device(&arguments.device, console)?;
     let mut session = Session::new(&device, &cage, &plan, console)?;
     if cage.has_uv() {
@@ -45,13 +50,17 @@ pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
     let mut dump = Dump { passes, session, cages: cage.positions(), properties };
 
     let mut frames = Vec::new();
+    if cage.deforms() {
+        let first = range.frames().next().unwrap_or_default();
+        dump.session.set_moment(moment(&cage, arguments, rate, first)?, None);
+    }
     if arguments.frames.repeat.is_some() {
         dump.frame(|_| Ok(()))?;
     }
     for (done, frame) in (0_u64..).zip(range.frames()) {
         console.progress(format_args!("frame {frame} ({done} of {} done)", range.count()));
-        if cage.follows_path(&arguments.view) {
-            dump.session.camera = frame_camera(&cage.camera(&arguments.view, frame)?, arguments.view.size);
+        if cage.is_animated(&arguments.view) {
+            dump.session.set_moment(moment(&cage, arguments, rate, frame)?, None);
         }
         let path = frame_path(&arguments.output, frame);
         let mut timed = Vec::new();
@@ -68,6 +77,18 @@ pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
     console.end_progress();
     stats_output.write(&Stats::new(&cage, &dump.session, 0, frames))?;
     check_validation(&device)
+}
+
+/// The scene in a frame. With a given tess factor there need not be a camera that sees it.
+fn moment(cage: &Cage, arguments: &DumpArguments, rate: FrameRate, frame: i32) -> Result<Moment> {
+    let frames = f64::from(frame);
+    match (Moment::new(cage, &arguments.view, rate, frames), arguments.surface.density()) {
+        (Err(_), Density::Tess(_)) => {
+            let nowhere = Camera::upright("none", Vec3::Z, Vec3::ZERO, 45.0, 1.0)?;
+            Ok(Moment::seen_by(cage, &nowhere, rate.seconds(frames)))
+        }
+        (moment, _) => moment,
+    }
 }
 
 /// What a frame of a dump needs.

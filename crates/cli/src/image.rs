@@ -6,6 +6,7 @@ use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, Encoder, Image, Record
 use planish_render::Targets;
 
 use crate::aov::PackedLayers;
+use crate::console::WrongUsage;
 
 /// Pixels that are decoded at once, so that no second copy of the image is needed.
 const CHUNK: usize = 1 << 20;
@@ -81,15 +82,78 @@ impl ColorSum {
     }
 }
 
-/// Reads the layers that the targets hold.
-pub fn read_layers(device: &Device, targets: &Targets) -> Result<PackedLayers> {
-    let [normal_depth, position_factor, ids, colors @ ..] = targets.layers() else {
+/// Reads the layers that the targets hold of a part of the image.
+pub fn read_layers(device: &Device, targets: &Targets, crop: &Crop) -> Result<PackedLayers> {
+    let [normal_depth, position_factor, ids, others @ ..] = targets.layers() else {
         return Ok(PackedLayers::default());
     };
+    let floats = |image: &Image| anyhow::Ok(crop.pixels(&ReadBack::new(device, image)?.floats(device)?));
+    let other = |place: usize| others.get(place).map_or(Ok(Vec::new()), floats);
     Ok(PackedLayers {
-        normal_depth: ReadBack::new(device, normal_depth)?.floats(device)?,
-        position_factor: ReadBack::new(device, position_factor)?.floats(device)?,
-        ids: ReadBack::new(device, ids)?.words(device)?,
-        colors: colors.first().map_or(Ok(Vec::new()), |image| ReadBack::new(device, image)?.floats(device))?,
+        normal_depth: floats(normal_depth)?,
+        position_factor: floats(position_factor)?,
+        ids: crop.pixels(&ReadBack::new(device, ids)?.words(device)?),
+        colors: other(0)?,
+        motion_st: other(1)?,
+        first_faces: Vec::new(),
     })
+}
+
+/// The part of an image that is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    part: Option<[u32; 4]>,
+    full: [u32; 2],
+}
+
+impl Crop {
+    /// The part asked for: left, top, width and height; none: all of it.
+    pub fn new(part: Option<[u32; 4]>, full: [u32; 2]) -> Result<Self> {
+        if let Some([x, y, width, height]) = part {
+            let fits = |first: u32, count: u32, all: u32| first.checked_add(count).is_some_and(|end| end <= all);
+            if !fits(x, width, full[0]) || !fits(y, height, full[1]) {
+                let found = format!("--crop: found {x},{y},{width}x{height}");
+                return Err(
+                    WrongUsage(format!("{found}, expected a part of the image of {}x{}", full[0], full[1])).into()
+                );
+            }
+        }
+        Ok(Self { part, full })
+    }
+
+    /// The part, if it is not all.
+    pub fn part(&self) -> Option<[u32; 4]> {
+        self.part
+    }
+
+    /// Its width and height.
+    pub fn size(&self) -> [u32; 2] {
+        self.part.map_or(self.full, |[_, _, width, height]| [width, height])
+    }
+
+    /// The part's pixels of those of the whole image.
+    pub fn pixels<T: Copy>(&self, all: &[T]) -> Vec<T> {
+        let Some([x, y, width, height]) = self.part.map(|part| part.map(|pixels| pixels as usize)) else {
+            return all.to_vec();
+        };
+        let rows = all.chunks_exact(self.full[0] as usize).skip(y).take(height);
+        rows.flat_map(|row| &row[x..x + width]).copied().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_crop_has_the_pixels_of_its_part() {
+        let crop = Crop::new(Some([1, 1, 2, 1]), [3, 3]).unwrap();
+        assert_eq!((crop.pixels(&[0, 1, 2, 3, 4, 5, 6, 7, 8]), crop.size()), (vec![4, 5], [2, 1]));
+        let whole = Crop::new(None, [3, 1]).unwrap();
+        assert_eq!((whole.pixels(&[7, 8, 9]), whole.size()), (vec![7, 8, 9], [3, 1]));
+        for part in [[2, 0, 2, 1], [0, 3, 1, 1], [u32::MAX, 0, 1, 1]] {
+            let message = Crop::new(Some(part), [3, 3]).unwrap_err().to_string();
+            assert!(message.contains("expected a part of the image of 3x3"), "{message}");
+        }
+    }
 }

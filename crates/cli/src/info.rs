@@ -18,14 +18,14 @@ use crate::args::InfoArguments;
 use crate::bench::median;
 use crate::cage::{Cage, MeshFacts};
 use crate::console::{Console, print_output};
-use crate::frames::FrameRange;
 use crate::offline::{Plan, check_gregory};
+use crate::scene_info::SceneInfo;
 use crate::stats::method_name;
 use crate::text_table::{TextTable, bytes_text, milliseconds_text};
 
 /// Runs the command.
 pub fn run(arguments: &InfoArguments, console: &Console) -> Result<()> {
-    let cage = Cage::load(&arguments.scene.path, arguments.scene.repair, console)?;
+    let cage = Cage::load(&arguments.scene, console)?;
     let desc = surface_desc(arguments, &cage)?;
     let mut made = preprocess(&cage.meshes(), &desc).with_context(|| cage.path().display().to_string())?;
     let (mut topology, mut tables) = (vec![made.times.topology], vec![made.times.tables]);
@@ -60,7 +60,10 @@ fn surface_desc(arguments: &InfoArguments, cage: &Cage) -> Result<SurfaceDesc> {
             check_gregory(cage, &desc)?;
             Ok(desc)
         }
-        _ => Ok(Plan::unseen(cage, surface, &arguments.view, FrameRange::single(0))?.desc),
+        _ => {
+            let rate = cage.frame_rate(None);
+            Ok(Plan::unseen(cage, surface, &arguments.view, rate, cage.frame_range(None, rate))?.desc)
+        }
     }
 }
 
@@ -71,6 +74,7 @@ struct Info {
     scene: String,
     scheme: &'static str,
     load_ms: f64,
+    graph: SceneInfo,
     mesh: MeshFacts,
     features: Features,
     refinement: RefinementInfo,
@@ -137,6 +141,7 @@ impl Info {
             scene: cage.path().display().to_string(),
             scheme: "catmull-clark",
             load_ms: cage.load_ms,
+            graph: SceneInfo::new(cage.scene()),
             mesh: cage.facts.clone(),
             features: Features::new(&cage.meshes(), cage.has_uv()),
             refinement: RefinementInfo::new(desc, made),
@@ -148,6 +153,7 @@ impl Info {
         let mut line = |name: &str, value: String| table.push([format!("{name:<22}{value}")]);
         let mesh = &self.mesh;
         line("scene", format!("{}, read in {} ms", self.scene, milliseconds_text(self.load_ms)));
+        self.graph.describe(&mut line);
         line("vertices", mesh.vertices.to_string());
         line("faces", format!("{} ({})", mesh.faces, histogram(&mesh.faces_by_sides, "of", "sides")));
         line("ptex faces", mesh.ptex_faces.to_string());

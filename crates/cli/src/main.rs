@@ -8,6 +8,7 @@
 //! | `cage` | a scene file, and what its mesh is like |
 //! | `displacement` | the displacement maps of a scene's meshes |
 //! | `offline` | device, surface and passes: the machinery that the commands share |
+//! | `shading` | materials and lights of a scene, and frames shaded by them |
 //! | `image` | a frame's images, read back |
 //! | `stats` | the JSON of `--stats` |
 //! | `render`, `dump`, `compare`, `info`, `bench`, `devices` | the commands |
@@ -25,10 +26,17 @@ mod dump;
 mod frames;
 mod image;
 mod info;
-mod jitter;
+mod interrupt;
+mod mattes;
+mod moment;
 mod names;
 mod offline;
+mod progress;
 mod render;
+mod sampling;
+mod scene_info;
+mod shading;
+mod split;
 mod stats;
 mod text_table;
 mod values;

@@ -5,6 +5,8 @@ use planish_render::{EndCap, GregoryPoints, Spacing, View};
 use planish_scene::displacement::{DisplacementKind, DisplacementLayout};
 use planish_subdiv::refine::CreasePatches;
 
+use crate::sampling::PixelFilter;
+
 /// Surface methods by name.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum MethodName {
@@ -26,6 +28,30 @@ pub enum LodName {
     Vertex,
     /// Every object: from the distance to its centre
     Object,
+}
+
+/// Pixel filters by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FilterName {
+    /// The same weight everywhere
+    Box,
+    /// Falls to 0 linearly
+    Triangle,
+    /// A bell, cut off at three standard deviations
+    Gaussian,
+    /// A bell without side lobes
+    BlackmanHarris,
+}
+
+impl From<FilterName> for PixelFilter {
+    fn from(name: FilterName) -> Self {
+        match name {
+            FilterName::Box => Self::Box,
+            FilterName::Triangle => Self::Triangle,
+            FilterName::Gaussian => Self::Gaussian,
+            FilterName::BlackmanHarris => Self::BlackmanHarris,
+        }
+    }
 }
 
 /// End caps by name.

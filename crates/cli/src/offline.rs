@@ -11,14 +11,18 @@ use planish_render::{
     GregoryPoints, Layers, ObjectDesc, Selection, Spacing, Status, Surface, SurfaceDesc, SurfaceMethod, Targets, View,
     preprocess,
 };
-use planish_scene::Camera;
+use planish_scene::{Camera, Lens, Pose};
+use planish_subdiv::ControlMesh;
 use planish_subdiv::refine::CreasePatches;
 
 use crate::args::{DeviceArguments, SurfaceArguments, ViewArguments};
 use crate::cage::{Cage, milliseconds};
 use crate::console::Console;
 use crate::frames::FrameRange;
+use crate::moment::{Moment, deform_surface};
 use crate::names::{GregoryNormalsName, LodName};
+use crate::shading::FrameParts;
+use crate::values::FrameRate;
 
 /// What a plan is made for.
 pub struct PlanSetting {
@@ -57,32 +61,45 @@ pub struct Plan {
 
 impl Plan {
     /// Decides for a cage that is to be seen, in all frames of a range.
-    pub fn new(cage: &Cage, surface: &SurfaceArguments, view: &ViewArguments, range: FrameRange) -> Result<Self> {
-        let first = range.frames().next().unwrap_or_default();
-        if !cage.follows_path(view) {
-            return Self::with_cameras(cage, surface, view, &[cage.camera(view, first)?]);
+    pub fn new(
+        cage: &Cage,
+        surface: &SurfaceArguments,
+        view: &ViewArguments,
+        rate: FrameRate,
+        range: FrameRange,
+    ) -> Result<Self> {
+        let moment = |frame: i32| Moment::new(cage, view, rate, f64::from(frame));
+        let setting = Self::setting(surface, view)?;
+        if cage.is_animated(view) {
+            return Self::of(cage, &setting, range.frames().map(moment));
         }
-        let cameras = range.frames().map(|frame| cage.camera(view, frame)).collect::<Result<Vec<_>>>()?;
-        Self::with_cameras(cage, surface, view, &cameras)
+        Self::of(cage, &setting, range.frames().take(1).map(moment))
     }
 
     /// Decides for a cage that is not drawn: with a given tess factor there need not be a camera that sees it.
-    pub fn unseen(cage: &Cage, surface: &SurfaceArguments, view: &ViewArguments, range: FrameRange) -> Result<Self> {
-        match (cage.camera(view, 0), surface.density()) {
+    pub fn unseen(
+        cage: &Cage,
+        surface: &SurfaceArguments,
+        view: &ViewArguments,
+        rate: FrameRate,
+        range: FrameRange,
+    ) -> Result<Self> {
+        let first = f64::from(range.frames().next().unwrap_or_default());
+        match (cage.camera(view, rate, first), surface.density()) {
             (Err(_), Density::Tess(_)) => {
                 let nowhere = Camera::upright("none", Vec3::Z, Vec3::ZERO, 45.0, 1.0)?;
-                Self::with_cameras(cage, surface, view, &[nowhere])
+                let setting = Self::setting(surface, view)?;
+                Self::of(cage, &setting, [Ok(Moment::seen_by(cage, &nowhere, rate.seconds(first)))])
             }
-            _ => Self::new(cage, surface, view, range),
+            _ => Self::new(cage, surface, view, rate, range),
         }
     }
 
-    /// `cameras` of all frames, of which there is one at least.
-    fn with_cameras(cage: &Cage, surface: &SurfaceArguments, view: &ViewArguments, cameras: &[Camera]) -> Result<Self> {
+    fn setting(surface: &SurfaceArguments, view: &ViewArguments) -> Result<PlanSetting> {
         surface.check_available()?;
-        let options = frame_options(surface.method()?, surface.density(), surface.lod == LodName::Object);
-        let setting = PlanSetting {
-            method: surface.method()?,
+        let method = surface.method()?;
+        Ok(PlanSetting {
+            method,
             max_level: surface.max_level(),
             crease_patches: surface.crease_patches.into(),
             end_cap: surface.end_cap.into(),
@@ -91,22 +108,33 @@ impl Plan {
             watertight: !surface.no_watertight,
             gregory_points: surface.gregory.into(),
             exact_normals: surface.gregory_normals == GregoryNormalsName::Exact,
-            options,
-        };
-        Self::of(cage, &setting, cameras)
+            options: frame_options(method, surface.density(), surface.lod == LodName::Object),
+        })
     }
 
-    /// Decides for frames seen by these cameras, of which there is one at least: deep enough for all of them, and no back is
+    /// Decides for frames of these moments, of which there is one at least: deep enough for all of them, and no back is
     /// hidden that one of them sees.
-    pub fn of(cage: &Cage, setting: &PlanSetting, cameras: &[Camera]) -> Result<Self> {
-        let mut objects = cage.objects(&cameras[0]);
-        let mut density = 0.0_f32;
-        for camera in cameras {
-            let seen = cage.objects(camera);
-            objects.iter_mut().zip(&seen).for_each(|(object, seen)| object.hides_backs &= seen.hides_backs);
-            let frame_camera = frame_camera(camera, setting.size);
-            density = density.max(largest_density(&cage.meshes(), &seen, &frame_camera, &setting.options)?);
+    pub fn of(cage: &Cage, setting: &PlanSetting, moments: impl IntoIterator<Item = Result<Moment>>) -> Result<Self> {
+        let mut first: Option<(Camera, Vec<ObjectDesc>)> = None;
+        let (mut density, mut is_placed) = (0.0_f32, false);
+        for moment in moments {
+            let moment = moment?;
+            let frame_camera = moment.frame_camera(setting.size);
+            let meshes = moment.meshes(cage);
+            let meshes: Vec<&ControlMesh> = meshes.iter().map(AsRef::as_ref).collect();
+            density = density.max(largest_density(&meshes, &moment.objects, &frame_camera, &setting.options)?);
+            is_placed |= moment.objects.iter().any(|object| object.to_world != Affine3A::IDENTITY);
+            match &mut first {
+                None => first = Some((moment.camera, moment.objects)),
+                Some((_, objects)) => {
+                    objects
+                        .iter_mut()
+                        .zip(&moment.objects)
+                        .for_each(|(object, seen)| object.hides_backs &= seen.hides_backs);
+                }
+            }
         }
+        let (camera, objects) = first.expect("a frame at least");
         let is_gregory = setting.method.is_one_patch_a_face();
         let level = if is_gregory { 0 } else { isolation_level(density, setting.max_level) };
         // Stencils are over the cage: end caps lie deeper.
@@ -130,11 +158,13 @@ impl Plan {
             gregory_points,
             exact_normals: setting.exact_normals,
             colors: cage.has_colors(),
+            deforms: cage.deforms(),
+            placed: is_placed,
             ..frame_needs(setting.spacing, density, &objects)
         };
         Ok(Self {
-            camera: cameras[0].clone(),
-            frame_camera: frame_camera(&cameras[0], setting.size),
+            frame_camera: frame_camera(&camera, setting.size),
+            camera,
             objects,
             desc,
             needs,
@@ -165,6 +195,17 @@ pub fn check_gregory(cage: &Cage, desc: &SurfaceDesc) -> Result<()> {
     }
     if desc.crease_patches == CreasePatches::Single {
         bail!("Gregory patches have no closed form of semi-sharp creases: expected --crease-patches infinite or none");
+    }
+    Ok(())
+}
+
+/// Refuses what motion is not known of.
+fn check_motion(cage: &Cage, plan: &Plan) -> Result<()> {
+    if plan.needs.moves && cage.deforms() && plan.desc.has_gregory_patches() {
+        bail!("motion of meshes that deform is not known on Gregory patches: expected method dfas, fas or uniform");
+    }
+    if plan.needs.moves && cage.displaces_what_deforms() {
+        bail!("motion of meshes that deform is that of the limit surface: expected no displacement map");
     }
     Ok(())
 }
@@ -221,6 +262,8 @@ pub struct Session {
     needs: FrameNeeds,
     hides_backs: bool,
     stages: FrameStages,
+    moment: Option<Moment>,
+    next: Option<(Moment, FrameCamera)>,
     /// How long making pipelines took, in milliseconds.
     pub pipelines_ms: f64,
 }
@@ -236,9 +279,11 @@ impl Session {
             bail!("{}: method uniform draws the limit surface: expected no displacement map", named());
         }
         check_gregory(cage, &plan.desc).with_context(named)?;
+        check_motion(cage, plan).with_context(named)?;
         let made = preprocess(&cage.meshes(), &plan.desc).with_context(named)?;
         let mut surface = Surface::new(device, &cage.meshes(), &plan.objects, plan.desc, made).with_context(named)?;
         cage.displace_surface(device, &mut surface)?;
+        deform_surface(device, &mut surface, cage, plan.needs.moves)?;
         let start = Instant::now();
         let stages = FrameStages::new(device, &plan.needs)?;
         let pipelines_ms = milliseconds(start);
@@ -255,8 +300,31 @@ impl Session {
             needs: plan.needs,
             hides_backs: plan.hides_backs(),
             stages,
+            moment: None,
+            next: None,
             pipelines_ms,
         })
+    }
+
+    /// Says when all frames from now on are, and where their motion leads to.
+    pub fn set_moment(&mut self, moment: Moment, next: Option<Moment>) {
+        self.camera = moment.frame_camera(self.camera.size);
+        let next_camera = |next: Moment| {
+            let camera = next.frame_camera(self.camera.size);
+            (next, camera)
+        };
+        self.next = next.map(next_camera);
+        self.moment = Some(moment);
+    }
+
+    /// The pose that frames have.
+    pub fn pose(&self) -> Option<&Pose> {
+        self.moment.as_ref().map(|moment| &moment.pose)
+    }
+
+    /// The lens of the moment's camera.
+    pub fn camera_lens(&self) -> Option<Lens> {
+        self.moment.as_ref().and_then(|moment| moment.camera.lens)
     }
 
     /// Records the stages before drawing, alone.
@@ -275,6 +343,27 @@ impl Session {
         self.pipelines_ms += milliseconds(start);
         let targets = Targets::new(&self.device, self.camera.size, options.needed_layers())?;
         Ok(Images { targets, passes })
+    }
+
+    /// What shadow maps are drawn with: the cages of these positions, at the moment that was set.
+    pub fn parts(&mut self, cages: &[&[[f32; 3]]]) -> Result<FrameParts<'_>> {
+        self.set_cages(cages)?;
+        Ok(FrameParts {
+            device: &self.device,
+            surface: &mut self.surface,
+            stages: &self.stages,
+            options: &self.options,
+        })
+    }
+
+    fn set_cages(&mut self, cages: &[&[[f32; 3]]]) -> Result<()> {
+        for (mesh, positions) in cages.iter().enumerate() {
+            self.surface.set_cage(mesh, positions)?;
+        }
+        if let Some(moment) = &self.moment {
+            moment.apply(&mut self.surface, self.next.as_ref().map(|(next, camera)| (next, camera)))?;
+        }
+        Ok(())
     }
 
     fn record_frame(&self, images: &Images, camera: &FrameCamera) -> Result<Recorded> {
@@ -305,9 +394,7 @@ impl Session {
         loop {
             let frame = record(self)?;
             let start = Instant::now();
-            for (mesh, positions) in cages.iter().enumerate() {
-                self.surface.set_cage(mesh, positions)?;
-            }
+            self.set_cages(cages)?;
             self.surface.set_frame(camera, &self.options)?;
             let report = self.device.submit_and_wait(&frame)?;
             let wall_ms = milliseconds(start);

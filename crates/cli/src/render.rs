@@ -1,68 +1,66 @@
 //! `planish render`: frames to EXR and PNG.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
-use anyhow::{Result, bail};
-use planish_film::{Film, ImageFormat, Metadata, check_image_output, write_image};
+use anyhow::{Context, Result, bail};
+use planish_film::{
+    Cryptomatte, ExrOptions, Film, FilmWriter, ImageFormat, Layer, Metadata, PngOptions, Target, Window, WriteOptions,
+    check_image_output, is_complete, remove_stale_files,
+};
+use planish_gpu::Device;
+use planish_render::{FrameCamera, Layers, View};
+use planish_scene::{Camera, Lens};
 
 use crate::aov::{Aov, drawn_layers};
 use crate::args::RenderArguments;
-use crate::cage::Cage;
-use crate::console::Console;
+use crate::cage::{Cage, milliseconds};
+use crate::console::{Console, WrongUsage};
 use crate::frames::{FrameRange, frame_path, has_placeholder};
-use crate::image::{ColorSum, read_layers};
-use crate::jitter::sample_offsets;
-use crate::offline::{Images, Plan, Session, aspect, check_validation, frame_camera, open_device};
-use crate::stats::{FrameStats, Stats, StatsOutput};
+use crate::image::{ColorSum, Crop, read_layers};
+use crate::interrupt;
+use crate::mattes::{material_matte, object_matte};
+use crate::moment::Moment;
+use crate::offline::{Drawn, Images, Plan, Session, aspect, check_validation, open_device};
+use crate::progress::Progress;
+use crate::sampling::{PixelFilter, Sample, samples};
+use crate::shading::{self, SceneShading};
+use crate::split::Split;
+use crate::stats::{FrameStats, GpuStats, Stats, StatsOutput};
+use crate::values::FrameRate;
 
 /// Runs the command.
 pub fn run(arguments: &RenderArguments, console: &Console) -> Result<()> {
-    let mut cage = Cage::load(&arguments.scene.path, arguments.scene.repair, console)?;
+    let mut cage = Cage::load(&arguments.scene, console)?;
     cage.displace(&arguments.displacement, console)?;
-    let aovs = arguments.aov.available()?;
-    check_outputs(arguments, aovs, console)?;
+    cage.light(&arguments.light);
+    let rate = cage.frame_rate(arguments.frames.fps);
+    let range = cage.frame_range(arguments.frames.frames, rate);
+    check_outputs(arguments, range, console)?;
+    let crop = Crop::new(arguments.crop, arguments.view.size)?;
     let stats_output = StatsOutput(arguments.frames.stats.as_ref());
     stats_output.check(arguments.outputs.iter().map(PathBuf::as_path))?;
-    let mut plan = Plan::new(&cage, &arguments.surface, &arguments.view, arguments.frames.range())?;
-    plan.cull(arguments.frames.no_cull);
-    let device = open_device(&arguments.device, console)?;
-    let mut session = Session::new(&device, &cage, &plan, console)?;
-    let images = session.images(arguments.shown.into(), drawn_layers(aovs))?;
-    if images.targets.has_vertex_colors() {
-        session.surface.set_colors(&device, &cage.meshes())?;
-    }
-    let mut sum = ColorSum::new(&device, &images.targets)?;
-
-    let mut frames = Vec::new();
-    let range = arguments.frames.range();
-    for (done, frame) in (0_u64..).zip(range.frames()) {
-        console.progress(format_args!("frame {frame} ({done} of {} done)", range.count()));
-        let is_first = done == 0;
-        plan.camera = cage.camera(&arguments.view, frame)?;
-        session.camera = frame_camera(&plan.camera, arguments.view.size);
-        timed_frames(arguments, &cage, &mut session, &images, frame, is_first, &mut frames)?;
-        let film = film(arguments, &cage, &plan, &mut session, &images, &mut sum, frame, console)?;
-        for output in &arguments.outputs {
-            let path = frame_path(output, frame);
-            write_image(&film, &path)?;
-            console.explain(format_args!("wrote {}", path.display()));
-        }
-    }
+    interrupt::listen()?;
+    let (device, mut renderer) = Renderer::open(arguments, &cage, rate, range, crop, console)?;
+    let done = renderer.frames(range);
     console.end_progress();
-    stats_output.write(&Stats::new(&cage, &session, images.targets.bytes(), frames))?;
+    let stats = Stats::new(&cage, &renderer.session, renderer.image_bytes(), renderer.frames.clone());
+    stats_output.write(&Stats { split_ms: Some(renderer.split), ..stats })?;
+    console.explain(format_args!("{}", renderer.split));
+    done?;
     check_validation(&device)
 }
 
 /// Finds out before any work whether the images can be written.
-fn check_outputs(arguments: &RenderArguments, aovs: &[Aov], console: &Console) -> Result<()> {
-    let range = arguments.frames.range();
+fn check_outputs(arguments: &RenderArguments, range: FrameRange, console: &Console) -> Result<()> {
     let mut has_exr = false;
     for output in &arguments.outputs {
         check_placeholder(output, range)?;
         let first = range.frames().next().unwrap_or_default();
         has_exr |= check_image_output(&frame_path(output, first))? == ImageFormat::Exr;
+        remove_stale_files(output);
     }
-    if !aovs.is_empty() && !has_exr {
+    if !arguments.aov.aovs().is_empty() && !has_exr {
         console.warn("--aov has no effect: only EXR files have layers");
     }
     Ok(())
@@ -76,76 +74,346 @@ pub fn check_placeholder(output: &Path, range: FrameRange) -> Result<()> {
     Ok(())
 }
 
-/// Draws a frame as often as it is to be timed, with a sample at the centre of every pixel.
-fn timed_frames(
-    arguments: &RenderArguments,
-    cage: &Cage,
-    session: &mut Session,
-    images: &Images,
-    frame: i32,
-    is_first: bool,
-    frames: &mut Vec<FrameStats>,
-) -> Result<()> {
-    let (cages, camera) = (cage.positions(), session.camera);
-    if arguments.frames.repeat.is_some() && is_first {
-        session.draw(images, &camera, &cages)?;
+/// How files are written.
+fn write_options(arguments: &RenderArguments) -> WriteOptions {
+    let output = &arguments.output;
+    WriteOptions {
+        exr: ExrOptions { compression: output.compression, multipart: output.multipart },
+        png: PngOptions { tone_map: output.tone_map, exposure: output.exposure },
     }
-    for _ in 0..arguments.frames.repeat.unwrap_or(1) {
-        let drawn = session.draw(images, &camera, &cages)?;
-        frames.push(FrameStats::drawn(frame, session, &drawn));
-    }
-    Ok(())
 }
 
-/// Reads the frame that was just drawn, and draws the samples that it needs besides.
-#[expect(clippy::too_many_arguments, reason = "a film is made of all that a render has")]
-fn film(
-    arguments: &RenderArguments,
-    cage: &Cage,
-    plan: &Plan,
-    session: &mut Session,
-    images: &Images,
-    sum: &mut ColorSum,
-    frame: i32,
-    console: &Console,
-) -> Result<Film> {
-    let device = &session.device.clone();
-    let aovs = arguments.aov.available()?;
-    let layers = if aovs.is_empty() {
-        Vec::new()
-    } else {
-        let packed = read_layers(device, &images.targets)?;
-        aovs.iter().map(|&aov| packed.layer(aov)).collect()
-    };
-    if arguments.samples == 1 {
-        sum.add(device)?;
-    } else {
-        for (done, offset) in (0..).zip(sample_offsets(arguments.samples)) {
-            console.progress(format_args!("frame {frame}: sample {done} of {}", arguments.samples));
-            let camera = session.camera.jittered(offset);
-            session.draw(images, &camera, &cage.positions())?;
-            sum.add(device)?;
+/// Images that are shaded as they are drawn, with layers, and the sum of their samples.
+struct Plain {
+    images: Images,
+    sum: ColorSum,
+}
+
+/// What is drawn for shading, and what shades it.
+struct Shaded {
+    images: Images,
+    shading: SceneShading,
+}
+
+/// Everything that a run of frames needs.
+struct Renderer<'a> {
+    arguments: &'a RenderArguments,
+    console: &'a Console,
+    cage: &'a Cage,
+    rate: FrameRate,
+    crop: Crop,
+    aovs: &'a [Aov],
+    samples: Vec<Sample>,
+    /// When the shutter opens and closes, in frames from the frame's own; none: everything stands still.
+    shutter: Option<[f64; 2]>,
+    session: Session,
+    /// What is drawn without shading, and with layers: none of a scene that is shaded and has no layers.
+    plain: Option<Plain>,
+    /// What a scene with materials or light is shaded with.
+    shaded: Option<Shaded>,
+    frames: Vec<FrameStats>,
+    split: Split,
+}
+
+impl<'a> Renderer<'a> {
+    fn open(
+        arguments: &'a RenderArguments,
+        cage: &'a Cage,
+        rate: FrameRate,
+        range: FrameRange,
+        crop: Crop,
+        console: &'a Console,
+    ) -> Result<(Device, Self)> {
+        let aovs = arguments.aov.aovs();
+        let mut plan = Plan::new(cage, &arguments.surface, &arguments.view, rate, range)?;
+        plan.cull(arguments.frames.no_cull);
+        plan.needs.moves = aovs.contains(&Aov::Motion);
+        let has_mattes = aovs.iter().any(|aov| aov.is_matte());
+        let is_shaded = View::from(arguments.shown) == View::Shaded && (has_mattes || shading::is_shaded(cage.scene()));
+        if has_mattes && !is_shaded {
+            return Err(WrongUsage("Cryptomattes are made with --view shaded alone".to_owned()).into());
         }
+        if is_shaded {
+            shading::add_needs(cage.scene(), &mut plan.needs);
+        }
+        let shutter = shutter(arguments, cage, &plan, rate);
+        let device = open_device(&arguments.device, console)?;
+        let mut session = Session::new(&device, cage, &plan, console)?;
+        session.surface.set_crop(crop.part());
+        let layers = drawn_layers(aovs);
+        let plain = if is_shaded && layers == Layers::None {
+            None
+        } else {
+            let images = session.images(arguments.shown.into(), layers)?;
+            if images.targets.has_vertex_colors() && !is_shaded {
+                shading::set_channels(&device, &mut session.surface, cage.scene())?;
+            }
+            Some(Plain { sum: ColorSum::new(&device, &images.targets)?, images })
+        };
+        let shaded = if is_shaded {
+            let images = session.images(View::Shaded, shading::LAYERS)?;
+            let (scene, size, map_size) = (cage.scene(), arguments.view.size, arguments.light.shadow_map_size);
+            let named = || cage.path().display().to_string();
+            let shading =
+                SceneShading::new(&device, &mut session.surface, scene, &plan.needs, size, has_mattes, map_size);
+            Some(Shaded { images, shading: shading.with_context(named)? })
+        } else {
+            None
+        };
+        let filter = PixelFilter::from(arguments.sampling.filter);
+        let width = arguments.sampling.filter_width.unwrap_or_else(|| filter.default_width());
+        let samples = samples(arguments.samples, filter, width);
+        let renderer = Self {
+            arguments,
+            console,
+            cage,
+            rate,
+            crop,
+            aovs,
+            samples,
+            shutter,
+            session,
+            plain,
+            shaded,
+            frames: Vec::new(),
+            split: Split::default(),
+        };
+        Ok((device, renderer))
     }
-    let [width, height] = session.camera.size;
-    Ok(Film { width, height, color: sum.take(), layers, metadata: metadata(arguments, plan, frame, [width, height]) })
+
+    /// Renders and writes them all, or until Ctrl-C.
+    fn frames(&mut self, range: FrameRange) -> Result<()> {
+        let start = Instant::now();
+        let mut writer = FilmWriter::new()?;
+        let rendered = self.render_all(range, &mut writer);
+        let finished = writer.finish();
+        let report = writer.report();
+        self.split.write = report.busy.as_secs_f64() * 1e3;
+        self.split.write_waited = report.waited.as_secs_f64() * 1e3;
+        self.split.wall = milliseconds(start);
+        let mut failed_count = rendered?;
+        let mut tell = |error: planish_film::Error| -> Result<()> {
+            if !self.arguments.continue_on_error {
+                return Err(error.into());
+            }
+            failed_count += 1;
+            self.console.warn(error);
+            Ok(())
+        };
+        if let Err(error) = finished {
+            tell(error)?;
+        }
+        writer.take_errors().into_iter().try_for_each(&mut tell)?;
+        if failed_count > 0 {
+            bail!("{failed_count} of {} frames failed", range.count());
+        }
+        if interrupt::is_requested() {
+            bail!("interrupted after {} files", report.file_count);
+        }
+        Ok(())
+    }
+
+    /// Renders them; returns how many failed.
+    fn render_all(&mut self, range: FrameRange, writer: &mut FilmWriter) -> Result<u64> {
+        let options = write_options(self.arguments);
+        let mut progress = Progress::new(self.console, range.count());
+        let mut failed_count = 0;
+        for frame in range.frames() {
+            let paths = self.arguments.outputs.iter().map(|output| frame_path(output, frame));
+            let targets: Vec<Target> = paths.map(|path| Target { path, options }).collect();
+            if self.arguments.skip_existing && targets.iter().all(|target| is_complete(&target.path)) {
+                self.console.explain(format_args!("frame {frame} is there"));
+                progress.frame_done(false);
+                continue;
+            }
+            let written = self.frame(frame, &progress).and_then(|film| {
+                let Some(film) = film else { return Ok(false) };
+                let told: Vec<String> = targets.iter().map(|target| target.path.display().to_string()).collect();
+                writer.write(film, targets)?;
+                told.iter().for_each(|path| self.console.explain(format_args!("writing {path}")));
+                Ok(true)
+            });
+            match written {
+                Ok(true) => {}
+                Ok(false) => break,
+                Err(error) if self.arguments.continue_on_error => {
+                    failed_count += 1;
+                    self.console.warn(format_args!("frame {frame}: {}", crate::console::error_text(&error)));
+                }
+                Err(error) => return Err(error),
+            }
+            progress.patches = self.frames.last().map_or(0, |frame| frame.patches_by_level.iter().sum());
+            progress.frame_done(true);
+        }
+        Ok(failed_count)
+    }
+
+    /// Renders a frame; none if Ctrl-C was pressed meanwhile.
+    fn frame(&mut self, frame: i32, progress: &Progress<'_>) -> Result<Option<Film>> {
+        progress.show(frame, 0, self.arguments.samples);
+        let camera = self.set_frame(frame)?;
+        self.timed_frames(frame)?;
+        let read = Instant::now();
+        let layers = self.layers()?;
+        // A single sample is what was just drawn.
+        let is_done = self.samples.len() == 1 && self.shaded.is_none();
+        if let Some(Plain { sum, .. }) = self.plain.as_mut().filter(|_| is_done) {
+            sum.add(&self.session.device)?;
+        }
+        self.split.read_back += milliseconds(read);
+        if let Some(Shaded { shading, .. }) = &self.shaded {
+            shading.begin(&self.session.device)?;
+        }
+        for (done, sample) in (0..).zip(self.samples.clone()).filter(|_| !is_done) {
+            if interrupt::is_requested() {
+                self.plain.as_mut().map(|plain| plain.sum.take());
+                return Ok(None);
+            }
+            progress.show(frame, done, self.arguments.samples);
+            self.sample(frame, done, &sample)?;
+        }
+        let (color, cryptomattes) = self.finish()?;
+        let [width, height] = self.crop.size();
+        let window = self.crop.part().map(|[x, y, _, _]| Window {
+            x: x.cast_signed(),
+            y: y.cast_signed(),
+            full_width: self.arguments.view.size[0],
+            full_height: self.arguments.view.size[1],
+        });
+        let metadata = self.metadata(&camera, frame);
+        Ok(Some(Film { width, height, window, color, layers, cryptomattes, metadata }))
+    }
+
+    /// The layers of what was drawn last.
+    fn layers(&self) -> Result<Vec<Layer>> {
+        let Some(Plain { images, .. }) = self.plain.as_ref().filter(|_| !self.aovs.is_empty()) else {
+            return Ok(Vec::new());
+        };
+        let mut packed = read_layers(&self.session.device, &images.targets, &self.crop)?;
+        packed.first_faces = self.session.surface.objects().iter().map(|object| object.first_face).collect();
+        Ok(self.aovs.iter().filter_map(|&aov| packed.layer(aov)).collect())
+    }
+
+    /// The mean of the samples, and what they covered.
+    fn finish(&mut self) -> Result<(Vec<[f32; 4]>, Vec<Cryptomatte>)> {
+        let read = Instant::now();
+        let Some(Shaded { shading, .. }) = &self.shaded else {
+            let sum = self.plain.as_mut().map(|plain| plain.sum.take()).unwrap_or_default();
+            return Ok((self.crop.pixels(&sum), Vec::new()));
+        };
+        let shaded = shading.finish(&self.session.device, self.samples.len() as u32)?;
+        let (scene, crop) = (self.cage.scene(), &self.crop);
+        let matte = |&aov: &Aov| match aov {
+            Aov::CryptoObject => Some(object_matte(scene, &shaded.objects, crop)),
+            Aov::CryptoMaterial => Some(material_matte(scene, &shaded.materials, crop)),
+            _ => None,
+        };
+        let mattes = self.aovs.iter().filter_map(matte).collect();
+        self.split.read_back += milliseconds(read);
+        Ok((crop.pixels(&shaded.color), mattes))
+    }
+
+    /// Puts the scene where it is in a frame; returns what sees it.
+    fn set_frame(&mut self, frame: i32) -> Result<Camera> {
+        let moment = self.moment(f64::from(frame))?;
+        let next = if self.aovs.contains(&Aov::Motion) { Some(self.moment(f64::from(frame) + 1.0)?) } else { None };
+        let camera = moment.camera.clone();
+        self.session.set_moment(moment, next);
+        Ok(camera)
+    }
+
+    fn moment(&mut self, frames: f64) -> Result<Moment> {
+        let moment = Moment::new(self.cage, &self.arguments.view, self.rate, frames)?;
+        self.split.animate += moment.milliseconds;
+        Ok(moment)
+    }
+
+    /// Draws a frame as often as it is to be timed, with a sample at the centre of every pixel.
+    fn timed_frames(&mut self, frame: i32) -> Result<()> {
+        let camera = self.session.camera;
+        if self.arguments.frames.repeat.is_some() && self.frames.is_empty() {
+            self.draw(&camera)?;
+        }
+        for _ in 0..self.arguments.frames.repeat.unwrap_or(1) {
+            let drawn = self.draw(&camera)?;
+            let stats = FrameStats::drawn(frame, &self.session, &drawn);
+            self.split.add(&stats.gpu_ms);
+            self.frames.push(stats);
+        }
+        Ok(())
+    }
+
+    /// Draws a frame, with layers where there are any.
+    fn draw(&mut self, camera: &FrameCamera) -> Result<Drawn> {
+        let plain = self.plain.as_ref().map(|plain| &plain.images);
+        let images = plain.or_else(|| self.shaded.as_ref().map(|shaded| &shaded.images)).expect("images");
+        self.session.draw(images, camera, &self.cage.positions())
+    }
+
+    /// Draws one sample of all pixels, and adds it to the image.
+    fn sample(&mut self, frame: i32, number: u32, sample: &Sample) -> Result<()> {
+        if let Some([open, close]) = self.shutter {
+            let moment = self.moment(f64::from(frame) + open + sample.time * (close - open))?;
+            self.session.set_moment(moment, None);
+        }
+        let mut camera = self.session.camera;
+        let lens = self.session.camera_lens().filter(|_| !self.arguments.sampling.no_depth_of_field);
+        if let Some(Lens { radius, focus_distance }) = lens {
+            camera = camera.through_lens(radius * sample.lens, focus_distance);
+        }
+        let camera = camera.jittered(sample.pixel);
+        let (cages, scene) = (self.cage.positions(), self.cage.scene());
+        if let Some(Shaded { images, shading }) = &mut self.shaded {
+            let start = Instant::now();
+            let pose = self.session.pose().cloned().unwrap_or_default();
+            let which = (number, self.samples.len() as u32);
+            shading.draw_shadow_maps(&mut self.session.parts(&cages)?, scene, &pose, which, self.shutter.is_some())?;
+            self.split.shade += milliseconds(start);
+            let drawn = self.session.draw(images, &camera, &cages)?;
+            self.split.add(&GpuStats::new(&drawn.report.timestamps));
+            let start = Instant::now();
+            shading.shade(&self.session.device, &images.targets, &camera, number)?;
+            self.split.shade += milliseconds(start);
+        } else if let Some(Plain { images, sum }) = &mut self.plain {
+            let drawn = self.session.draw(images, &camera, &cages)?;
+            self.split.add(&GpuStats::new(&drawn.report.timestamps));
+            let read = Instant::now();
+            sum.add(&self.session.device)?;
+            self.split.read_back += milliseconds(read);
+        }
+        Ok(())
+    }
+
+    fn image_bytes(&self) -> u64 {
+        let plain = self.plain.as_ref().map_or(0, |plain| plain.images.targets.bytes());
+        plain + self.shaded.as_ref().map_or(0, |shaded| shaded.images.targets.bytes())
+    }
+
+    fn metadata(&self, camera: &Camera, frame: i32) -> Metadata {
+        let shutter = self.shutter.map(|[open, close]| self.rate.seconds(close - open) as f32);
+        let mut metadata = Metadata {
+            software: format!("planish {}", env!("CARGO_PKG_VERSION")),
+            frame,
+            time: self.rate.time(frame),
+            frames_per_second: Some(self.rate.as_fraction()),
+            shutter_seconds: shutter,
+            ..Metadata::default()
+        };
+        metadata.set_camera(
+            &camera.view_matrix().to_cols_array_2d(),
+            &camera.projection_matrix(aspect(self.arguments.view.size)).to_cols_array_2d(),
+        );
+        metadata
+    }
 }
 
-fn metadata(arguments: &RenderArguments, plan: &Plan, frame: i32, size: [u32; 2]) -> Metadata {
-    let rate = arguments.frames.fps;
-    let mut metadata = Metadata {
-        software: format!("planish {}", env!("CARGO_PKG_VERSION")),
-        frame,
-        time: rate.time(frame),
-        frames_per_second: Some(rate.as_fraction()),
-        ..Metadata::default()
-    };
-    let camera = &plan.camera;
-    metadata.set_camera(
-        &camera.view_matrix().to_cols_array_2d(),
-        &camera.projection_matrix(aspect(size)).to_cols_array_2d(),
-    );
-    metadata
+/// When the shutter opens and closes, in frames: as asked for, or as the camera says. None where nothing moves meanwhile, or a
+/// single sample sees one moment alone.
+fn shutter(arguments: &RenderArguments, cage: &Cage, plan: &Plan, rate: FrameRate) -> Option<[f64; 2]> {
+    let of_camera = plan.camera.rig.as_ref().and_then(|rig| rig.shutter);
+    let in_frames = of_camera.map(|seconds| seconds.map(|second| second / rate.seconds(1.0)));
+    let shutter = arguments.sampling.shutter.or(in_frames);
+    shutter.filter(|[open, close]| open < close && arguments.samples > 1 && cage.is_animated(&arguments.view))
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ use serde::Serialize;
 use crate::cage::Cage;
 use crate::console::print_output;
 use crate::offline::{Drawn, Session};
+use crate::split::Split;
 
 /// The path that stands for standard output.
 const STANDARD_OUTPUT: &str = "-";
@@ -28,6 +29,9 @@ pub struct Stats {
     pub preprocess_ms: PreprocessStats,
     pub memory_bytes: MemoryStats,
     pub frames: Vec<FrameStats>,
+    /// Where the time of all samples went, of `render`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub split_ms: Option<Split>,
 }
 
 /// What ran it.
@@ -117,12 +121,16 @@ pub struct PatchStats {
 /// Milliseconds by timestamp queries; 0 where a method lacks the stage or a device timestamps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct GpuStats {
+    /// Cages copied, and deformed.
+    pub animate: f64,
     pub density: f64,
     pub select: f64,
     pub subdivide: f64,
     pub limit: f64,
     pub emit: f64,
     pub draw: f64,
+    /// Shadow maps, shading and sums of samples.
+    pub shade: f64,
     pub total: f64,
 }
 
@@ -133,12 +141,14 @@ impl GpuStats {
         for [(_, start), (stage, end)] in timestamps.array_windows() {
             let milliseconds = end - start;
             match stage.as_str() {
+                "animate" => stats.animate += milliseconds,
                 "density" => stats.density += milliseconds,
                 "select" => stats.select += milliseconds,
                 "subdivide" => stats.subdivide += milliseconds,
                 "limit" => stats.limit += milliseconds,
                 "emit" => stats.emit += milliseconds,
                 "draw" => stats.draw += milliseconds,
+                "shade" => stats.shade += milliseconds,
                 _ => {}
             }
         }
@@ -225,6 +235,7 @@ impl Stats {
                 images: image_bytes,
             },
             frames,
+            split_ms: None,
         }
     }
 }
@@ -320,7 +331,10 @@ mod tests {
         assert_eq!(keys(frame), expected);
         let kinds = ["gregory_quad", "gregory_triangle", "quad", "regular", "transition", "truncated"];
         assert_eq!(keys(&frame["patches"]), kinds);
-        assert_eq!(keys(&frame["gpu_ms"]), ["density", "draw", "emit", "limit", "select", "subdivide", "total"]);
+        assert_eq!(
+            keys(&frame["gpu_ms"]),
+            ["animate", "density", "draw", "emit", "limit", "select", "shade", "subdivide", "total"]
+        );
         assert_eq!(frame["triangles"], json!(0));
     }
 

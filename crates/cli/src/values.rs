@@ -57,6 +57,39 @@ fn number(text: &str, is_good: impl Fn(f32) -> bool, expected: &str) -> Result<f
     text.parse().ok().filter(good).ok_or_else(|| format!("expected {expected}"))
 }
 
+/// An exposure in stops.
+pub fn stops(text: &str) -> Result<f32, String> {
+    let stops = text.parse().ok().filter(|stops: &f32| stops.abs() <= 64.0);
+    stops.ok_or_else(|| "expected -64 to 64 stops".to_owned())
+}
+
+/// Width of a pixel filter.
+pub fn filter_width(text: &str) -> Result<f64, String> {
+    let width = text.parse().ok().filter(|width| (0.01..=32.0).contains(width));
+    width.ok_or_else(|| "expected 0.01 to 32 pixels".to_owned())
+}
+
+/// When a shutter opens and closes, in frames: `OPEN,CLOSE`, or `CLOSE` of one that opens at 0.
+pub fn shutter(text: &str) -> Result<[f64; 2], String> {
+    let (open, close) = text.split_once(',').unwrap_or(("0", text));
+    let frames = |text: &str| text.trim().parse().ok().filter(|frames: &f64| frames.abs() <= 1e6);
+    match (frames(open), frames(close)) {
+        (Some(open), Some(close)) if open <= close => Ok([open, close]),
+        _ => Err("expected OPEN,CLOSE with OPEN <= CLOSE, or CLOSE >= 0, in frames".to_owned()),
+    }
+}
+
+/// A part of an image: left, top, width and height, from `X,Y,WxH`.
+pub fn crop(text: &str) -> Result<[u32; 4], String> {
+    let parsed = || {
+        let (left, rest) = text.split_once(',')?;
+        let (top, rest) = rest.split_once(',')?;
+        let [width, height] = size(rest).ok()?;
+        Some([left.parse().ok()?, top.parse().ok()?, width, height])
+    };
+    parsed().ok_or_else(|| "expected X,Y,WxH in pixels, with W and H from 1 on".to_owned())
+}
+
 /// Levels `A-B`, or one level.
 pub fn levels(text: &str) -> Result<RangeInclusive<u32>, String> {
     let level = |text: &str| text.parse().ok().filter(|level| *level <= MAX_LEVEL);
@@ -72,9 +105,24 @@ pub fn levels(text: &str) -> Result<RangeInclusive<u32>, String> {
 pub struct FrameRate(f64);
 
 impl FrameRate {
+    /// The nearest that the interface allows.
+    pub fn near(rate: f64) -> Self {
+        Self(rate.clamp(0.001, 10_000.0))
+    }
+
     /// A frame's time in seconds.
     pub fn time(self, frame: i32) -> f32 {
-        (f64::from(frame) / self.0) as f32
+        self.seconds(f64::from(frame)) as f32
+    }
+
+    /// The time after so many frames, in seconds.
+    pub fn seconds(self, frames: f64) -> f64 {
+        frames / self.0
+    }
+
+    /// The frame nearest to a time in seconds.
+    pub fn frame_at(self, seconds: f64) -> i32 {
+        (seconds * self.0).round() as i32
     }
 
     /// As a fraction: whole rates, those of NTSC (a whole number times 1000 / 1001), or thousandths.
@@ -132,6 +180,15 @@ mod tests {
         assert!(["0.99", "-1", "nan", "inf", "x"].iter().all(|bad| tess_factor(bad).is_err()));
         assert!(["0", "-4", "nan", "inf"].iter().all(|bad| edge_pixels(bad).is_err()));
         assert!(["0", "180", "nan"].iter().all(|bad| field_of_view(bad).is_err()));
+    }
+
+    #[test]
+    fn shutters_and_crops_are_numbers_in_order() {
+        assert_eq!((shutter("0.5"), shutter("-0.25,0.25")), (Ok([0.0, 0.5]), Ok([-0.25, 0.25])));
+        assert!(["", "-0.5", "1,0", "a,b", "nan", "0,inf"].iter().all(|bad| shutter(bad).is_err()));
+        assert_eq!(crop("3,4,50x60"), Ok([3, 4, 50, 60]));
+        assert!(["", "1,2", "1,2,0x5", "-1,2,3x4", "1,2,3,4"].iter().all(|bad| crop(bad).is_err()));
+        assert!(["0", "-1", "33", "x"].iter().all(|bad| filter_width(bad).is_err()));
     }
 
     #[test]

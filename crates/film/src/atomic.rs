@@ -1,9 +1,11 @@
 //! Files that are complete or absent.
 
 use std::{
+    ffi::OsStr,
     fs::{self, File},
     io::{self, BufWriter, Write},
     path::Path,
+    time::{Duration, SystemTime},
 };
 
 use tempfile::NamedTempFile;
@@ -69,9 +71,38 @@ fn folder(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
+/// What names of temporary files begin with; random letters and digits follow.
+const TEMPORARY_PREFIX: &str = ".planish-";
+
+/// How many of them.
+const RANDOM_LENGTH: usize = 6;
+
+/// A temporary file that was not written to for so long belongs to a process that is gone.
+const STALE: Duration = Duration::from_secs(3600);
+
+/// Removes the temporary files that a process which was killed left beside `path`: those with names of ours that were
+/// not written to for an hour. Returns how many; what cannot be listed or removed is left.
+pub fn remove_stale_files(path: &Path) -> usize {
+    let Ok(entries) = fs::read_dir(folder(path)) else { return 0 };
+    let stale = entries.flatten().filter(|entry| {
+        let is_old = |modified: SystemTime| modified.elapsed().is_ok_and(|age| age >= STALE);
+        let metadata = entry.metadata();
+        is_temporary(&entry.file_name())
+            && metadata.is_ok_and(|metadata| metadata.is_file() && metadata.modified().is_ok_and(is_old))
+    });
+    stale.filter(|entry| fs::remove_file(entry.path()).is_ok()).count()
+}
+
+fn is_temporary(name: &OsStr) -> bool {
+    let random = name.to_str().and_then(|name| name.strip_prefix(TEMPORARY_PREFIX));
+    random.is_some_and(|random| random.len() == RANDOM_LENGTH && random.bytes().all(|b| b.is_ascii_alphanumeric()))
+}
+
 /// Opened as any new file, so with its permissions; `tempfile` by itself would make it its owner's alone.
 fn create_beside(path: &Path) -> io::Result<NamedTempFile> {
-    tempfile::Builder::new().prefix(".planish-").make_in(folder(path), |temporary| File::create_new(temporary))
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(TEMPORARY_PREFIX).rand_bytes(RANDOM_LENGTH);
+    builder.make_in(folder(path), |temporary| File::create_new(temporary))
 }
 
 impl Error {
@@ -108,6 +139,27 @@ mod tests {
         write(&path, |writer| writer.write_all(b"new").map_err(|source| Error::write(&path, source))).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn only_old_files_with_names_of_ours_are_stale() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        let old = SystemTime::now() - 2 * STALE;
+        let make = |name: &str, modified: SystemTime| {
+            File::create(folder.path().join(name)).unwrap().set_modified(modified).unwrap();
+        };
+        let own = create_beside(&path).unwrap();
+        own.as_file().set_modified(old).unwrap();
+        make(".planish-abcDE1", SystemTime::now());
+        for name in ["a.exr", ".planish-", ".planish-abc", ".planish-notes!", ".planish-abcdef.exr"] {
+            make(name, old);
+        }
+        fs::create_dir(folder.path().join(".planish-folder")).unwrap();
+        assert_eq!(remove_stale_files(&path), 1);
+        assert!(!own.path().exists());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 7);
+        assert_eq!(remove_stale_files(&folder.path().join("none/a.exr")), 0);
     }
 
     #[test]

@@ -4,6 +4,8 @@ use std::{io, path::PathBuf};
 
 use thiserror::Error;
 
+use crate::Window;
+
 /// The result of everything here that can fail.
 pub type Result<T> = std::result::Result<T, Error>;
 
@@ -91,6 +93,93 @@ pub enum Error {
         /// The name.
         channel: String,
     },
+    /// A film's window has no pixels, or lies beyond what EXR can say.
+    #[error(
+        "a film of {width}x{height} pixels at {},{} in a frame of {}x{} cannot be written; expected a frame of at least \
+         1x1 and coordinates within {}",
+        window.x, window.y, window.full_width, window.full_height, i32::MAX / 2
+    )]
+    Window {
+        /// The window.
+        window: Window,
+        /// Pixels in a row of the film.
+        width: u32,
+        /// Rows of the film.
+        height: u32,
+    },
+    /// EXR cannot store an attribute under this name.
+    #[error("the attribute {:?} has an unfit name; expected at most 255 printable ASCII characters", format!("planish/{name}"))]
+    AttributeName {
+        /// The name without `planish/`.
+        name: String,
+    },
+    /// A single part that is compressed by DWAA would lose bits of data.
+    #[error("DWAA would lose bits of channel {channel}: layers that are no light need parts of their own (multipart)")]
+    LossyLayer {
+        /// The channel's name.
+        channel: String,
+    },
+    /// DWAA's level is no level.
+    #[error("DWAA's level is {level}; expected a number of at least 0")]
+    DwaLevel {
+        /// What was asked for.
+        level: f32,
+    },
+    /// An exposure that light cannot be multiplied by.
+    #[error("the exposure is {stops} stops; expected -126 to 127")]
+    Exposure {
+        /// What was asked for.
+        stops: f32,
+    },
+    /// A Cryptomatte's pixels have no ranks, or more than can be numbered.
+    #[error("Cryptomatte {name} has {found} ranks a pixel; expected 1 to {most}")]
+    RankCount {
+        /// The Cryptomatte's name.
+        name: String,
+        /// Ranks a pixel.
+        found: usize,
+        /// The most that are possible.
+        most: usize,
+    },
+    /// A Cryptomatte has not the same number of ranks in each pixel.
+    #[error("Cryptomatte {name} has {found} ranks; expected {expected}, {rank_count} a pixel")]
+    RankLength {
+        /// The Cryptomatte's name.
+        name: String,
+        /// Width times height times ranks.
+        expected: u64,
+        /// Ranks found.
+        found: usize,
+        /// Ranks a pixel.
+        rank_count: usize,
+    },
+    /// A Cryptomatte has a rank of a name that it has not.
+    #[error("Cryptomatte {name} has a rank of name {index}, but only {name_count} names")]
+    RankIndex {
+        /// The Cryptomatte's name.
+        name: String,
+        /// The index found.
+        index: u32,
+        /// Names there are.
+        name_count: usize,
+    },
+    /// A Cryptomatte has a coverage that is none.
+    #[error("Cryptomatte {name} has a coverage of {coverage}; expected a number of at least 0")]
+    RankCoverage {
+        /// The Cryptomatte's name.
+        name: String,
+        /// The coverage found.
+        coverage: f32,
+    },
+    /// Two Cryptomattes have the same name.
+    #[error("two Cryptomattes of the film are named {name:?}")]
+    DuplicateCryptomatte {
+        /// The name.
+        name: String,
+    },
+    /// The thread that writes films is gone.
+    #[error("the thread that writes images has stopped")]
+    WriterStopped,
     /// The vertices of a dump do not make whole triangles.
     #[error("cannot write {}: {vertex_count} vertices are not whole triangles", path.display())]
     PartialTriangle {

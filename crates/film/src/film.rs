@@ -2,13 +2,13 @@
 
 use std::collections::HashSet;
 
-use crate::{Error, Metadata, Result};
+use crate::{Cryptomatte, Error, Layer, Metadata, Result};
 
 /// The colour's channels, in the order of [`Film::color`].
 pub(crate) const COLOR_CHANNELS: [&str; 4] = ["R", "G", "B", "A"];
 
-/// EXR's limit on a channel's name, in bytes.
-const MAX_CHANNEL_NAME: usize = 255;
+/// EXR's limit on the name of a channel or an attribute, in bytes.
+const MAX_NAME: usize = 255;
 
 /// One finished frame. All pixel arrays hold `width * height` pixels, row by row, the top row first, left to right.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,71 +17,30 @@ pub struct Film {
     pub width: u32,
     /// Rows.
     pub height: u32,
+    /// Where those pixels lie in the frame, if they are not all of it.
+    pub window: Option<Window>,
     /// Scene-linear RGB with the primaries of Rec. 709, premultiplied by the coverage in the fourth component.
     pub color: Vec<[f32; 4]>,
     /// What is stored besides the colour. PNG files leave it out.
     pub layers: Vec<Layer>,
+    /// Mattes for what is seen in each pixel. PNG files leave them out.
+    pub cryptomattes: Vec<Cryptomatte>,
     /// What the header tells about the frame. PNG files leave it out.
     pub metadata: Metadata,
 }
 
-/// A named group of channels of one type: depth, normals, ids.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Layer {
-    /// `Z`, `N`, `uv`, `face` ..; with no components, also the name of the only channel.
-    pub name: String,
-    /// `X Y Z` of a layer `N` make the channels `N.X N.Y N.Z`; empty: a single channel named as the layer.
-    pub components: Vec<String>,
-    /// The components of the first pixel, those of the second, and so on: `width * height * channel_count` samples.
-    pub samples: Samples,
-}
-
-/// The samples of a layer: 32 bits each, stored as they are.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Samples {
-    /// Depths, vectors, parameters, tess factors.
-    Float(Vec<f32>),
-    /// Ids, levels and the like.
-    Uint(Vec<u32>),
-}
-
-impl Samples {
-    fn len(&self) -> usize {
-        match self {
-            Samples::Float(samples) => samples.len(),
-            Samples::Uint(samples) => samples.len(),
-        }
-    }
-}
-
-impl Layer {
-    /// A layer of floats: `Layer::float("N", &["X", "Y", "Z"], normals)`, or `Layer::float("Z", &[], depths)` for a
-    /// single channel.
-    pub fn float(name: &str, components: &[&str], samples: Vec<f32>) -> Self {
-        Self::new(name, components, Samples::Float(samples))
-    }
-
-    /// A layer with one unsigned integer a pixel: `Layer::uint("face", faces)`.
-    pub fn uint(name: &str, samples: Vec<u32>) -> Self {
-        Self::new(name, &[], Samples::Uint(samples))
-    }
-
-    fn new(name: &str, components: &[&str], samples: Samples) -> Self {
-        Self { name: name.to_owned(), components: components.iter().map(|&c| c.to_owned()).collect(), samples }
-    }
-
-    /// Samples a pixel, at least 1.
-    pub fn channel_count(&self) -> usize {
-        self.components.len().max(1)
-    }
-
-    /// The names that the channels have in the file, in the order of the samples.
-    pub fn channel_names(&self) -> Vec<String> {
-        if self.components.is_empty() {
-            return vec![self.name.clone()];
-        }
-        self.components.iter().map(|component| format!("{}.{component}", self.name)).collect()
-    }
+/// A film's place in its frame: EXR's data window is `width * height` pixels from (`x`, `y`) on, its display window the
+/// frame, whose upper left pixel is (0, 0).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// Column of the film's first pixel; negative where the film begins left of the frame.
+    pub x: i32,
+    /// Row of the film's first pixel.
+    pub y: i32,
+    /// Pixels in a row of the frame.
+    pub full_width: u32,
+    /// Rows of the frame.
+    pub full_height: u32,
 }
 
 impl Film {
@@ -90,15 +49,22 @@ impl Film {
         u64::from(self.width) * u64::from(self.height)
     }
 
+    /// The window, or that of a film that is all of its frame.
+    pub fn window(&self) -> Window {
+        self.window.unwrap_or(Window { x: 0, y: 0, full_width: self.width, full_height: self.height })
+    }
+
     /// Whether the film can be written; every writer asks first.
     ///
     /// # Errors
-    /// The film has no pixels; the colour or a layer has the wrong length; a channel's name is unfit or taken.
+    /// The film has no pixels; its window is none or beyond EXR's coordinates; the colour, a layer or a Cryptomatte has
+    /// the wrong length; a Cryptomatte has ranks that mean nothing; a name is unfit or taken.
     pub fn check(&self) -> Result<()> {
         let (width, height) = (self.width, self.height);
         if width == 0 || height == 0 {
             return Err(Error::EmptyFilm { width, height });
         }
+        self.check_window()?;
         let pixel_count = self.pixel_count();
         if self.color.len() as u64 != pixel_count {
             return Err(Error::ColorLength { expected: pixel_count, found: self.color.len() });
@@ -110,17 +76,53 @@ impl Film {
             if found as u64 != expected {
                 return Err(Error::LayerLength { layer: layer.name.clone(), expected, found, channel_count });
             }
-            for channel in layer.channel_names() {
-                let printable = channel.bytes().all(|byte| byte.is_ascii_graphic() || byte == b' ');
-                if channel.is_empty() || channel.len() > MAX_CHANNEL_NAME || !printable {
-                    return Err(Error::ChannelName { layer: layer.name.clone(), channel });
-                }
-                if taken.contains(&channel) {
-                    return Err(Error::DuplicateChannel { channel });
-                }
-                taken.insert(channel);
+            take_names(&layer.name, layer.channel_names(), &mut taken)?;
+        }
+        let mut names = HashSet::new();
+        for matte in &self.cryptomattes {
+            matte.check(pixel_count)?;
+            take_names(&matte.name, matte.channel_names(), &mut taken)?;
+            if !names.insert(&matte.name) {
+                return Err(Error::DuplicateCryptomatte { name: matte.name.clone() });
             }
+        }
+        match self.metadata.extra.keys().find(|name| !is_name(&format!("planish/{name}"))) {
+            Some(name) => Err(Error::AttributeName { name: name.clone() }),
+            None => Ok(()),
+        }
+    }
+
+    /// EXR counts pixels in `int`, and its readers compute with half of that range.
+    fn check_window(&self) -> Result<()> {
+        const LIMIT: i64 = i32::MAX as i64 / 2;
+        let window = self.window();
+        let ends = [(window.x, self.width), (window.y, self.height)];
+        let is_far = ends.iter().any(|&(start, size)| {
+            i64::from(start) < -LIMIT || i64::from(start) > LIMIT || i64::from(start) + i64::from(size) > LIMIT
+        });
+        let full = [window.full_width, window.full_height];
+        if is_far || full.iter().any(|&size| size == 0 || i64::from(size) > LIMIT) {
+            return Err(Error::Window { window, width: self.width, height: self.height });
         }
         Ok(())
     }
+}
+
+/// Channels of a layer, whose names must be fit for EXR and free.
+fn take_names(layer: &str, channels: Vec<String>, taken: &mut HashSet<String>) -> Result<()> {
+    for channel in channels {
+        if !is_name(&channel) {
+            return Err(Error::ChannelName { layer: layer.to_owned(), channel });
+        }
+        if taken.contains(&channel) {
+            return Err(Error::DuplicateChannel { channel });
+        }
+        taken.insert(channel);
+    }
+    Ok(())
+}
+
+fn is_name(name: &str) -> bool {
+    let is_printable = name.bytes().all(|byte| byte.is_ascii_graphic() || byte == b' ');
+    (1..=MAX_NAME).contains(&name.len()) && is_printable
 }

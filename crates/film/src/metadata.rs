@@ -1,5 +1,7 @@
 //! What an EXR header tells about a frame besides its pixels.
 
+use std::collections::BTreeMap;
+
 /// A 4x4 matrix in the convention of OpenEXR (Imath): points are row vectors, `p' = [x y z 1] * M`, and
 /// `m[row][column]` holds the translation in `m[3]`.
 ///
@@ -17,6 +19,11 @@ pub type Matrix = [[f32; 4]; 4];
 /// | `frame` | `frame` | `int` |
 /// | `time` | `time` | `float` |
 /// | `frames_per_second` | `framesPerSecond` | `rational` |
+/// | `shutter_seconds` | `expTime` | `float` |
+/// | `aperture` | `aperture` | `float` |
+/// | `focus` | `focus` | `float` |
+/// | `screen_window_width` | `screenWindowWidth` | `float` |
+/// | `extra` | `planish/NAME` | `string` |
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Metadata {
     /// World to camera, left-handed as OpenEXR wants it: x to the right, y up, z positive in front of the camera.
@@ -32,10 +39,20 @@ pub struct Metadata {
     pub time: f32,
     /// Nominal playback rate, as numerator and denominator: (24, 1), (30000, 1001).
     pub frames_per_second: Option<(i32, u32)>,
+    /// How long the shutter is open, in seconds.
+    pub shutter_seconds: Option<f32>,
+    /// The lens's aperture in f-stops: focal length over diameter.
+    pub aperture: Option<f32>,
+    /// The camera's focus distance, in meters.
+    pub focus: Option<f32>,
+    /// Width of what the frame shows, a unit away from the camera; absent: 1.
+    pub screen_window_width: Option<f32>,
+    /// What else is to be told: values by names, which are printable ASCII.
+    pub extra: BTreeMap<String, String>,
 }
 
 impl Metadata {
-    /// Derives both camera matrices from those of a Vulkan renderer.
+    /// Derives both camera matrices, and the width of the screen window, from the matrices of a Vulkan renderer.
     ///
     /// `world_to_view`: right-handed, x to the right, y up, looking down -z. `view_to_clip`: to Vulkan's clip space, y
     /// down, -w to w in x and y. Both as [`Matrix`], so glam's column-vector matrices pass as `to_cols_array_2d()`.
@@ -48,6 +65,8 @@ impl Metadata {
             [[0.5, 0.0, 0.0, 0.0], [0.0, 0.5, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.5, 0.5, 0.0, 1.0]];
         self.world_to_camera = Some(product(world_to_view, &VIEW_TO_CAMERA));
         self.world_to_ndc = Some(product(&product(world_to_view, view_to_clip), &CLIP_TO_NDC));
+        // x runs from -1 to 1 over the frame, a unit away in perspective and anywhere without.
+        self.screen_window_width = Some(2.0 / view_to_clip[0][0].abs()).filter(|width| width.is_normal());
     }
 }
 
@@ -81,6 +100,11 @@ mod tests {
     fn camera_space_is_left_handed_with_positive_depth() {
         let to_camera = metadata().world_to_camera.unwrap();
         assert_eq!(transform([1.0, 2.0, 3.0], &to_camera), [1.0, 2.0, 2.0]);
+    }
+
+    #[test]
+    fn the_screen_window_of_a_right_angle_is_two_wide_a_unit_away() {
+        assert_eq!(metadata().screen_window_width, Some(2.0));
     }
 
     #[test]

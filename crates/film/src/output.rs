@@ -3,7 +3,7 @@
 use std::io::Write as _;
 use std::path::Path;
 
-use crate::{Error, Film, Result, atomic, write_exr, write_png};
+use crate::{Error, ExrOptions, Film, PngOptions, Result, atomic, write_exr_with, write_png_with};
 
 /// A format that holds a film.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,14 +34,31 @@ fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension))
 }
 
+/// How files are made, whatever their format.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WriteOptions {
+    /// Of EXR files.
+    pub exr: ExrOptions,
+    /// Of PNG files.
+    pub png: PngOptions,
+}
+
+/// [`write_image_with`] the default options.
+///
+/// # Errors
+/// As [`write_image_with`].
+pub fn write_image(film: &Film, path: &Path) -> Result<()> {
+    write_image_with(film, path, &WriteOptions::default())
+}
+
 /// Writes `film` in the format that the extension of `path` names.
 ///
 /// # Errors
-/// [`Error::Extension`], and those of [`write_exr`] and [`write_png`].
-pub fn write_image(film: &Film, path: &Path) -> Result<()> {
+/// [`Error::Extension`], and those of [`write_exr_with`] and [`write_png_with`].
+pub fn write_image_with(film: &Film, path: &Path, options: &WriteOptions) -> Result<()> {
     match ImageFormat::from_path(path)? {
-        ImageFormat::Exr => write_exr(film, path),
-        ImageFormat::Png => write_png(film, path),
+        ImageFormat::Exr => write_exr_with(film, path, &options.exr),
+        ImageFormat::Png => write_png_with(film, path, &options.png),
     }
 }
 

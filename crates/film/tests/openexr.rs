@@ -3,7 +3,9 @@
 use std::{fs, path::Path};
 
 use exr::prelude::*;
-use planish_film::{Film, Layer as FilmLayer, Metadata, Samples, write_exr};
+use planish_film::{
+    Cryptomatte, ExrOptions, Film, Layer as FilmLayer, Metadata, Samples, Window, write_exr, write_exr_with,
+};
 
 const WIDTH: u32 = 5;
 /// Two whole blocks of 16 rows and a part of one.
@@ -43,7 +45,9 @@ fn film() -> Film {
             frame: -3,
             time: 1.25,
             frames_per_second: Some((30_000, 1001)),
+            ..Metadata::default()
         },
+        ..Film::default()
     }
 }
 
@@ -120,6 +124,7 @@ fn samples_come_back_bit_for_bit() {
         for (offset, name) in layer.channel_names().iter().enumerate() {
             let expected = match &layer.samples {
                 Samples::Float(s) => FlatSamples::F32(s.iter().skip(offset).step_by(stride).copied().collect()),
+                Samples::Half(s) => FlatSamples::F16(s.iter().skip(offset).step_by(stride).copied().collect()),
                 Samples::Uint(s) => FlatSamples::U32(s.iter().skip(offset).step_by(stride).copied().collect()),
             };
             assert_eq!(*channel(&image, name), expected, "{name}");
@@ -201,18 +206,161 @@ fn absent_metadata_is_left_out() {
     assert_eq!(attributes.frames_per_second, None);
 }
 
+/// With attributes enough that a hash map would hardly give one order twice.
+fn film_with_mattes() -> Film {
+    let mut film = film();
+    film.metadata.extra = (0..9).map(|i| (format!("note {i}"), format!("value {i}"))).collect();
+    for name in ["CryptoObject", "CryptoMaterial"] {
+        film.cryptomattes.push(Cryptomatte {
+            name: name.to_owned(),
+            names: vec!["a".to_owned(), "b".to_owned()],
+            rank_count: 2,
+            ranks: (0..2 * PIXEL_COUNT as u32).map(|i| (i % 2, 0.5)).collect(),
+        });
+    }
+    film
+}
+
 #[test]
 fn equal_films_give_equal_bytes() {
     let folder = tempfile::tempdir().unwrap();
-    let bytes = |name: &str| {
-        let path = folder.path().join(name);
-        write_exr(&film(), &path).unwrap();
-        fs::read(path).unwrap()
-    };
-    let first = bytes("first.exr");
-    for _ in 0..8 {
-        assert_eq!(first, bytes("again.exr"));
+    for multipart in [false, true] {
+        let bytes = |name: &str| {
+            let path = folder.path().join(name);
+            let options = ExrOptions { multipart, ..ExrOptions::default() };
+            write_exr_with(&film_with_mattes(), &path, &options).unwrap();
+            fs::read(path).unwrap()
+        };
+        let first = bytes("first.exr");
+        for _ in 0..20 {
+            assert!(first == bytes("again.exr"));
+        }
     }
+}
+
+#[test]
+fn attributes_are_sorted_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film.exr");
+    write_exr(&film_with_mattes(), &path).unwrap();
+    let bytes = fs::read(path).unwrap();
+    // Magic number and version, then name, type, size and value of each.
+    let mut rest = &bytes[8..];
+    let mut names = Vec::new();
+    while rest[0] != 0 {
+        let mut word = || {
+            let end = rest.iter().position(|&byte| byte == 0).unwrap();
+            let word = String::from_utf8(rest[..end].to_vec()).unwrap();
+            rest = &rest[end + 1..];
+            word
+        };
+        names.push(word());
+        word();
+        let size = u32::from_le_bytes(rest[..4].try_into().unwrap()) as usize;
+        rest = &rest[4 + size..];
+    }
+    assert!(names.is_sorted() && names.contains(&"planish/note 3".to_owned()), "{names:?}");
+    assert_eq!(names.iter().filter(|name| name.starts_with("cryptomatte/")).count(), 8);
+}
+
+#[test]
+fn dwaa_is_refused_where_one_part_would_lose_data() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film.exr");
+    let write = |layers: Vec<FilmLayer>, level: f32, multipart: bool| {
+        let options = ExrOptions { compression: planish_film::Compression::Dwaa(level), multipart };
+        write_exr_with(&Film { layers, ..film() }, &path, &options).map_err(|error| error.to_string())
+    };
+    let vectors = |name: &str| vec![FilmLayer::float(name, &["X", "Y", "Z"], floats(3, 0.0))];
+    let colors = |name: &str| vec![FilmLayer::half(name, &["R", "G", "B"], &floats(3, 0.0))];
+    let lost = |channel: &str| {
+        Err(format!(
+            "DWAA would lose bits of channel {channel}: layers that are no light need parts of their own (multipart)"
+        ))
+    };
+    assert_eq!(write(vectors("N"), 45.0, false), lost("N.Y"));
+    assert_eq!(write(colors("albedo"), 45.0, false), lost("albedo.B"));
+    assert_eq!(write(vec![FilmLayer::float("Y", &[], floats(1, 0.0))], 45.0, false), lost("Y"));
+    assert_eq!(write(vec![FilmLayer::uint("id.R", uints(1))], 45.0, false), Ok(()));
+    assert_eq!(write(vectors("N"), 45.0, true), Ok(()));
+    // A layer that would join the colour's part.
+    assert_eq!(write(colors("rgba"), 45.0, true), lost("rgba.B"));
+    assert_eq!(write(Vec::new(), -1.0, true), Err("DWAA's level is -1; expected a number of at least 0".to_owned()));
+    fs::remove_file(path).unwrap();
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn unfit_cryptomattes_are_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film.exr");
+    let message = |change: fn(&mut Film)| {
+        let mut film = film_with_mattes();
+        change(&mut film);
+        write_exr(&film, &path).unwrap_err().to_string()
+    };
+    assert_eq!(
+        message(|film| film.cryptomattes[0].ranks[7].0 = 2),
+        "Cryptomatte CryptoObject has a rank of name 2, but only 2 names"
+    );
+    assert_eq!(
+        message(|film| film.cryptomattes[0].ranks[7].1 = f32::NAN),
+        "Cryptomatte CryptoObject has a coverage of NaN; expected a number of at least 0"
+    );
+    assert_eq!(
+        message(|film| film.cryptomattes[1].ranks.truncate(9)),
+        "Cryptomatte CryptoMaterial has 9 ranks; expected 370, 2 a pixel"
+    );
+    for rank_count in [0, 201] {
+        let mut film = film_with_mattes();
+        film.cryptomattes[0].rank_count = rank_count;
+        let expected = format!("Cryptomatte CryptoObject has {rank_count} ranks a pixel; expected 1 to 200");
+        assert_eq!(write_exr(&film, &path).unwrap_err().to_string(), expected);
+    }
+    assert_eq!(
+        message(|film| film.cryptomattes[1] = film.cryptomattes[0].clone()),
+        "two channels of the film are named \"CryptoObject00.R\""
+    );
+    assert!(!path.exists());
+}
+
+#[test]
+fn windows_beyond_the_format_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film.exr");
+    let write = |x: i32, y: i32, full_width: u32, full_height: u32| {
+        let window = Some(Window { x, y, full_width, full_height });
+        write_exr(&Film { window, ..film() }, &path).map_err(|error| error.to_string())
+    };
+    let refused = |place: &str, size: &str| {
+        Err(format!(
+            "a film of 5x37 pixels at {place} in a frame of {size} cannot be written; expected a frame of at least 1x1 \
+             and coordinates within 1073741823"
+        ))
+    };
+    assert_eq!(write(0, 0, 0, 9), refused("0,0", "0x9"));
+    assert_eq!(write(i32::MAX, 0, 9, 9), refused("2147483647,0", "9x9"));
+    assert_eq!(write(0, i32::MIN, 9, 9), refused("0,-2147483648", "9x9"));
+    assert_eq!(write(0, 0, 9, u32::MAX), refused("0,0", "9x4294967295"));
+    // Beside the frame, too, is a place.
+    assert_eq!(write(-100, 100, 9, 9), Ok(()));
+}
+
+#[test]
+fn attributes_have_names_that_the_format_can_hold() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film.exr");
+    for name in ["a\nb", "größe", &"n".repeat(248)] {
+        let mut film = film();
+        film.metadata.extra.insert(name.to_owned(), String::new());
+        let message = write_exr(&film, &path).unwrap_err().to_string();
+        assert!(message.ends_with("has an unfit name; expected at most 255 printable ASCII characters"), "{message}");
+        assert!(!message.contains('\n'), "{message:?}");
+    }
+    let mut film = film();
+    film.metadata.extra.insert("n".repeat(247), String::new());
+    write_exr(&film, &path).unwrap();
+    read_back(&path);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::{fs, path::PathBuf};
 
 use image::{ColorType, DynamicImage, ImageReader};
-use planish_film::{Film, Layer, write_png};
+use planish_film::{Film, Layer, PngOptions, ToneMap, Window, write_png, write_png_with};
 
 fn film(width: u32, height: u32, color: Vec<[f32; 4]>) -> Film {
     Film { width, height, color, ..Film::default() }
@@ -93,6 +93,64 @@ fn equal_films_give_equal_bytes() {
     let color = (0..64 * 64).map(|i| [i as f32 / 4096.0, 0.5, (i % 64) as f32 / 64.0, 1.0]).collect();
     let film = film(64, 64, color);
     assert_eq!(Written::new(&film).bytes(), Written::new(&film).bytes());
+}
+
+/// The 8-bit pixels of a film of one row.
+fn pixels(film: &Film, options: &PngOptions) -> Vec<[u8; 4]> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film.png");
+    write_png_with(film, &path, options).unwrap();
+    let image = ImageReader::open(path).unwrap().decode().unwrap();
+    image.into_rgba8().pixels().map(|pixel| pixel.0).collect()
+}
+
+#[test]
+fn exposure_is_in_stops_and_leaves_alpha() {
+    let film = film(2, 1, vec![[0.25, 0.125, 0.0, 1.0], [0.125, 0.0625, 0.0, 0.5]]);
+    let options = PngOptions { exposure: 1.0, ..PngOptions::default() };
+    assert_eq!(pixels(&film, &options), [[188, 137, 0, 255], [188, 137, 0, 128]]);
+    let folder = tempfile::tempdir().unwrap();
+    for (exposure, told) in [(f32::NAN, "NaN"), (1000.0, "1000"), (f32::NEG_INFINITY, "-inf")] {
+        let options = PngOptions { exposure, ..PngOptions::default() };
+        let message = write_png_with(&film, &folder.path().join("a.png"), &options).unwrap_err().to_string();
+        assert_eq!(message, format!("the exposure is {told} stops; expected -126 to 127"));
+    }
+}
+
+#[test]
+fn tone_maps_act_on_the_colour_that_is_not_premultiplied() {
+    for tone_map in [ToneMap::Neutral, ToneMap::Aces] {
+        let options = PngOptions { tone_map, exposure: 0.0 };
+        let opaque = [2.0, 0.5, 0.1, 1.0];
+        let half = opaque.map(|value| value / 2.0);
+        let [whole, covered] = pixels(&film(2, 1, vec![opaque, half]), &options)[..] else { panic!("two pixels") };
+        assert_eq!(whole[..3], covered[..3]);
+        assert_eq!([whole[3], covered[3]], [255, 128]);
+        assert!(whole[0] < 255 && whole[0] > whole[1] && whole[1] > whole[2], "{tone_map:?}: {whole:?}");
+    }
+}
+
+#[test]
+fn bright_light_is_not_clipped_by_a_curve() {
+    let grey = |i| 0.9 * 2.0_f32.powi(i);
+    let ramp: Vec<_> = (0..5).map(|i| [grey(i), grey(i), grey(i), 1.0]).collect();
+    let steps = |tone_map| {
+        let mut reds: Vec<u8> = pixels(&film(5, 1, ramp.clone()), &PngOptions { tone_map, exposure: 0.0 })
+            .iter()
+            .map(|pixel| pixel[0])
+            .collect();
+        reds.dedup();
+        reds.len()
+    };
+    assert_eq!(steps(ToneMap::Clip), 2);
+    assert_eq!([ToneMap::Neutral, ToneMap::Aces].map(steps), [5, 5]);
+}
+
+#[test]
+fn a_film_that_is_a_part_of_its_frame_is_all_of_its_picture() {
+    let mut film = film(2, 1, vec![[1.0; 4]; 2]);
+    film.window = Some(Window { x: 3, y: 4, full_width: 9, full_height: 9 });
+    assert_eq!(pixels(&film, &PngOptions::default()).len(), 2);
 }
 
 #[test]

@@ -147,6 +147,20 @@ impl Encoder {
         }
     }
 
+    /// Leaves pixels outside of a rectangle as they are: left, top, width and height. Until rendering ends.
+    ///
+    /// # Panics
+    /// Outside of rendering.
+    pub fn set_scissor(&mut self, [x, y, width, height]: [u32; 4]) {
+        assert!(self.rendering.is_some(), "{}: a scissor outside of rendering", self.commands.name);
+        let area = vk::Rect2D {
+            offset: vk::Offset2D { x: x.cast_signed(), y: y.cast_signed() },
+            extent: vk::Extent2D { width, height },
+        };
+        // SAFETY: the command buffer is being recorded, with a pipeline whose scissor is dynamic.
+        unsafe { self.commands.device.raw.cmd_set_scissor(self.commands.raw, 0, &[area]) };
+    }
+
     /// Draws. The order of two draws is the order of their recording.
     ///
     /// # Panics

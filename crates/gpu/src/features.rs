@@ -20,6 +20,8 @@ pub enum Feature {
     Synchronization2,
     /// Local sizes by specialization constants. Required.
     Maintenance4,
+    /// Fragments that are discarded go on for the differences to their neighbours. Required, as of every device of Vulkan 1.3.
+    ShaderDemoteToHelperInvocation,
     /// Capture of primitives before rasterization.
     TransformFeedback,
     /// Several draws by one indirect command; without it they are recorded one by one.
@@ -46,13 +48,14 @@ pub enum Feature {
 
 impl Feature {
     /// Every feature this crate knows.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::TessellationShader,
         Self::BufferDeviceAddress,
         Self::ScalarBlockLayout,
         Self::DynamicRendering,
         Self::Synchronization2,
         Self::Maintenance4,
+        Self::ShaderDemoteToHelperInvocation,
         Self::TransformFeedback,
         Self::MultiDrawIndirect,
         Self::DrawIndirectCount,
@@ -76,6 +79,7 @@ impl Feature {
             Self::DynamicRendering => "dynamicRendering",
             Self::Synchronization2 => "synchronization2",
             Self::Maintenance4 => "maintenance4",
+            Self::ShaderDemoteToHelperInvocation => "shaderDemoteToHelperInvocation",
             Self::TransformFeedback => "transformFeedback",
             Self::MultiDrawIndirect => "multiDrawIndirect",
             Self::DrawIndirectCount => "drawIndirectCount",
@@ -93,7 +97,7 @@ impl Feature {
     /// Whether a device without it is refused.
     #[must_use]
     pub fn is_required(self) -> bool {
-        self <= Self::Maintenance4
+        self <= Self::ShaderDemoteToHelperInvocation
     }
 
     /// Whether it can be asked of a device of any version: the others came with Vulkan 1.2 and 1.3 or an extension.
@@ -135,6 +139,7 @@ impl FeatureStructs {
             Feature::DynamicRendering => &mut self.vulkan13.dynamic_rendering,
             Feature::Synchronization2 => &mut self.vulkan13.synchronization2,
             Feature::Maintenance4 => &mut self.vulkan13.maintenance4,
+            Feature::ShaderDemoteToHelperInvocation => &mut self.vulkan13.shader_demote_to_helper_invocation,
             Feature::TransformFeedback => &mut self.feedback.transform_feedback,
             Feature::MultiDrawIndirect => &mut self.core.multi_draw_indirect,
             Feature::DrawIndirectCount => &mut self.vulkan12.draw_indirect_count,

@@ -284,6 +284,8 @@ impl ListBuffers {
 pub(crate) fn keep(encoder: &mut Encoder, surface: &crate::surface::Surface) {
     let all = surface.buffers.all().into_iter().chain(surface.frame.all()).chain(surface.lists.all());
     let all = all.chain(surface.maps.all()).chain(surface.tex_coords.all()).chain(surface.colors.all());
+    let all = all.chain(surface.deform.iter().flat_map(|deform| deform.all()));
+    let all = all.chain(surface.motion.iter().flat_map(|motion| motion.all()));
     all.for_each(|buffer| encoder.keep(buffer));
 }
 

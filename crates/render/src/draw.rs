@@ -1,6 +1,6 @@
 //! The draw stage: the passes of a frame into images, after the stages of [`crate::FrameStages`].
 
-use planish_gpu::{Device, Draw, DrawArguments, Encoder, Feature, GraphicsPipeline};
+use planish_gpu::{DepthTarget, Device, Draw, DrawArguments, Encoder, Feature, GraphicsPipeline, Image, RenderTargets};
 use planish_shaders::DrawHead;
 
 use crate::camera::FrameCamera;
@@ -39,6 +39,30 @@ fn check_targets(device: &Device, layers: Layers) -> Result<(), Error> {
     Err(Error::TooFewTargets { device: device.name().to_owned(), found, expected })
 }
 
+/// The pipelines that draw depth alone.
+fn depth_options(surface: &SurfaceDesc, needs: &FrameNeeds) -> PipelineOptions {
+    PipelineOptions {
+        method: surface.method,
+        end_cap: surface.end_cap,
+        spacing: needs.spacing,
+        output: Output::Depth,
+        view: View::Shaded,
+        cull_back: false,
+        wire: false,
+        creases: surface.has_creased_patches(),
+        placed: needs.placed,
+        cuts: needs.cuts,
+        watertight: needs.watertight,
+        displaced: needs.displaced,
+        tex_coords: false,
+        stencils: needs.gregory_points == GregoryPoints::Stencil,
+        exact_normals: needs.exact_normals,
+        colors: false,
+        moves: false,
+        cutouts: needs.cutouts,
+    }
+}
+
 /// The passes that draw a surface into images.
 pub struct DrawPasses {
     fill: Vec<(PatchKind, GraphicsPipeline)>,
@@ -61,22 +85,13 @@ impl DrawPasses {
         let layers = options.needed_layers();
         check_targets(device, layers)?;
         let fill = PipelineOptions {
-            method: surface.method,
-            end_cap: surface.end_cap,
-            spacing: needs.spacing,
             output: Output::Image(layers),
             view: options.view,
             cull_back: options.cull_back,
-            wire: false,
-            creases: surface.has_creased_patches(),
-            placed: needs.placed,
-            cuts: needs.cuts,
-            watertight: needs.watertight,
-            displaced: needs.displaced,
-            tex_coords: false,
-            stencils: needs.gregory_points == GregoryPoints::Stencil,
-            exact_normals: needs.exact_normals,
-            colors: layers == Layers::GeometryAndColors,
+            tex_coords: (layers == Layers::Shading || layers == Layers::GeometryAndColors) && needs.tex_coords,
+            colors: layers == Layers::GeometryAndColors || layers == Layers::Shading && needs.colors,
+            moves: layers == Layers::GeometryAndColors && needs.moves,
+            ..depth_options(surface, needs)
         };
         let wire = PipelineOptions { wire: true, ..fill };
         Ok(Self {
@@ -86,16 +101,38 @@ impl DrawPasses {
         })
     }
 
+    /// The passes that draw depth alone, as lights see it.
+    pub fn of_depth(device: &Device, surface: &SurfaceDesc, needs: &FrameNeeds) -> Result<Self, Error> {
+        let options =
+            PipelineOptions { tex_coords: needs.cutouts && needs.tex_coords, ..depth_options(surface, needs) };
+        Ok(Self {
+            fill: pipelines(device, &options)?,
+            wire: Vec::new(),
+            is_software: device.is_software() && device.has(Feature::DrawIndirectCount),
+        })
+    }
+
     /// Records the passes, drawn indirectly from the lists that the stages before made: one draw a kind of patch. Takes the time
     /// `draw` and the statistics `draw`.
     pub fn record(&self, encoder: &mut Encoder, surface: &Surface, camera: &FrameCamera, targets: &Targets) {
         targets.render(|targets| encoder.begin_rendering(targets));
+        if let Some(crop) = surface.crop {
+            encoder.set_scissor(crop);
+        }
         encoder.begin_statistics("draw");
         self.record_lists(encoder, &self.fill, surface, camera);
         encoder.end_statistics();
         self.record_lists(encoder, &self.wire, surface, camera);
         encoder.end_rendering();
         encoder.timestamp("draw");
+    }
+
+    /// Records the passes of [`Self::of_depth`].
+    pub fn record_depth(&self, encoder: &mut Encoder, surface: &Surface, camera: &FrameCamera, depth: &Image) {
+        let depth = Some(DepthTarget { image: depth, clear: Some(0.0) });
+        encoder.begin_rendering(&RenderTargets { colors: &[], depth, extent: camera.size });
+        self.record_lists(encoder, &self.fill, surface, camera);
+        encoder.end_rendering();
     }
 
     fn record_lists(

@@ -80,6 +80,8 @@ impl DumpPasses {
             stencils: needs.gregory_points == GregoryPoints::Stencil,
             exact_normals: needs.exact_normals,
             colors: needs.colors,
+            moves: false,
+            cutouts: false,
         };
         let buffer = |name, kind, size| Buffer::new(device, &BufferDesc { name, kind, size });
         Ok(Self {

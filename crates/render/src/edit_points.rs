@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use planish_gpu::{ComputePipeline, Device, Encoder};
+use planish_gpu::{Buffer, ComputePipeline, Device, Encoder};
 use planish_shaders::EditTarget;
 use planish_shaders::edit_points_comp::{PROGRAM, Push};
 use planish_subdiv::edits::PointEdit;
@@ -22,9 +22,9 @@ impl EditPoints {
     }
 
     /// Records one dispatch over a level's edits.
-    pub(crate) fn record(&self, encoder: &mut Encoder, surface: &Surface, edits: Range<u32>) {
+    pub(crate) fn record(&self, encoder: &mut Encoder, surface: &Surface, points: &Buffer, edits: Range<u32>) {
         let push = Push {
-            points: address(&surface.frame.points),
+            points: address(points),
             targets: address(&surface.buffers.edit_targets),
             offsets: address(&surface.frame.edit_offsets),
             first_edit: edits.start,

@@ -5,6 +5,7 @@ use planish_shaders::DrawPush;
 
 use crate::buffers::keep;
 use crate::camera::FrameCamera;
+use crate::deform::Deform;
 use crate::emit::Emit;
 use crate::error::Error;
 use crate::limit::Limit;
@@ -18,6 +19,7 @@ use crate::upload::address;
 
 /// The stages of a frame that make what is drawn.
 pub struct FrameStages {
+    deform: Option<Deform>,
     select: Select,
     subdivide: Subdivide,
     limit: Limit,
@@ -30,6 +32,7 @@ impl FrameStages {
     /// Makes the pipelines.
     pub fn new(device: &Device, needs: &FrameNeeds) -> Result<Self, Error> {
         Ok(Self {
+            deform: needs.deforms.then(|| Deform::new(device)).transpose()?,
             select: Select::new(device, needs)?,
             subdivide: Subdivide::new(device)?,
             limit: Limit::new(device, needs)?,
@@ -40,7 +43,7 @@ impl FrameStages {
     }
 
     /// Records: cages to points, density, select, subdivide, limit, spokes of Gregory patches, emit. Takes the times `start`,
-    /// `density`, `select`, `subdivide`, `limit` (spokes are part of it) and `emit`; uniform refinement has no density, select
+    /// `animate`, `density`, `select`, `subdivide`, `limit` (spokes are part of it) and `emit`; uniform refinement has no density, select
     /// and emit. How the frame is seen, selected and culled is what [`Surface::set_frame`] said last when it runs.
     ///
     /// # Panics
@@ -54,19 +57,40 @@ impl FrameStages {
         keep(encoder, surface);
         encoder.timestamp("start");
         Select::record_start(encoder, surface);
+        self.record_deform(encoder, surface);
+        encoder.timestamp("animate");
         let is_selected = surface.desc.method != SurfaceMethod::Uniform;
         if is_selected {
             self.select.record(encoder, surface);
         }
-        self.subdivide.record(encoder, surface);
+        self.subdivide.record(encoder, surface, &surface.frame.points);
         encoder.timestamp("subdivide");
-        self.limit.record(encoder, surface);
+        self.record_next(encoder, surface);
+        // Last, as it says what the tangents of limit points are.
+        self.limit.record(encoder, surface, &surface.frame.points, &surface.frame.limits);
         if let Some(spokes) = &self.spokes {
             spokes.record(encoder, surface);
         }
         encoder.timestamp("limit");
         if is_selected {
             self.emit.record(encoder, surface);
+        }
+    }
+
+    /// Cages that deform, at this moment and the next.
+    fn record_deform(&self, encoder: &mut Encoder, surface: &Surface) {
+        let Some((deform, buffers)) = self.deform.as_ref().zip(surface.deform.as_ref()) else { return };
+        deform.record(encoder, buffers, &buffers.pose, &surface.frame.points);
+        if let Some(next) = &surface.motion {
+            deform.record(encoder, buffers, &next.pose, &next.points);
+        }
+    }
+
+    /// The points of the next moment, by the rows that this one uses.
+    fn record_next(&self, encoder: &mut Encoder, surface: &Surface) {
+        if let Some(next) = surface.motion.as_ref().filter(|_| self.needs.moves) {
+            self.subdivide.record(encoder, surface, &next.points);
+            self.limit.record(encoder, surface, &next.points, &next.limits);
         }
     }
 

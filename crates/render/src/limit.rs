@@ -1,7 +1,7 @@
 //! The limit stage: positions and normals on the limit surface at the corners of irregular leaves (FAS section 4.1).
 //! Shader: `glsl/limit.comp`.
 
-use planish_gpu::{ComputePipeline, Device, Encoder};
+use planish_gpu::{Buffer, ComputePipeline, Device, Encoder};
 use planish_shaders::limit_comp::{PROGRAM, Push};
 use planish_shaders::{DeviceAddress, Indices, LimitPoint, LimitTangents, ListHeads};
 use planish_subdiv::tables::Tables;
@@ -23,12 +23,12 @@ impl Limit {
     }
 
     /// Records one dispatch over all limit points in use.
-    pub(crate) fn record(&self, encoder: &mut Encoder, surface: &Surface) {
+    pub(crate) fn record(&self, encoder: &mut Encoder, surface: &Surface, points: &Buffer, limits: &Buffer) {
         let Some(LimitsInUse { in_use, head, list }) = LimitsInUse::of(surface) else { return };
         let (tables, frame) = (&surface.buffers, &surface.frame);
         let push = Push {
-            points: address(&frame.points),
-            limits: address(&frame.limits),
+            points: address(points),
+            limits: address(limits),
             rows: address(&tables.limit_rows),
             indices: address(&tables.limit_indices),
             weights: address(&tables.limit_weights),

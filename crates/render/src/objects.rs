@@ -14,6 +14,8 @@ const MIRRORED: u32 = 4;
 const LINEAR_TEX_COORDS: u32 = 8;
 const VERTEX_COLORS: u32 = 16;
 const VARYING_COLORS: u32 = 32;
+const DEFORMS: u32 = 64;
+const HIDDEN: u32 = 128;
 
 /// A mesh at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,12 +26,14 @@ pub struct ObjectDesc {
     pub to_world: Affine3A,
     /// Whether the backs of its triangles are never seen: it is closed, opaque and seen from outside.
     pub hides_backs: bool,
+    /// Whether it is left out.
+    pub is_hidden: bool,
 }
 
 impl ObjectDesc {
     /// A mesh where it is.
     pub fn identity(mesh: usize) -> Self {
-        Self { mesh, to_world: Affine3A::IDENTITY, hides_backs: false }
+        Self { mesh, to_world: Affine3A::IDENTITY, hides_backs: false, is_hidden: false }
     }
 
     /// Whether the transform mirrors.
@@ -100,10 +104,33 @@ pub(crate) fn color(object: &mut Object, interpolation: Option<VertexInterpolati
     };
 }
 
+/// Puts an object in its place. Its cage's facts are to be set again, as are its displacement and its motion.
+pub(crate) fn place(object: &mut Object, desc: &ObjectDesc) {
+    object.to_world = columns(&desc.to_world);
+    object.motion = columns(&Affine3A::IDENTITY);
+    object.flags &= !(HIDES_BACKS | MIRRORED | HIDDEN);
+    object.flags |=
+        flag(desc.hides_backs, HIDES_BACKS) | flag(desc.is_mirrored(), MIRRORED) | flag(desc.is_hidden, HIDDEN);
+}
+
+fn flag(is_set: bool, flag: u32) -> u32 {
+    if is_set { flag } else { 0 }
+}
+
+/// Says that an object's cage deforms, or that it does not.
+pub(crate) fn deform(object: &mut Object, deforms: bool) {
+    object.flags = object.flags & !DEFORMS | flag(deforms, DEFORMS);
+}
+
+/// Whether it does.
+pub(crate) fn deforms(object: &Object) -> bool {
+    object.flags & DEFORMS != 0
+}
+
 /// What an object needs to know of its mesh, besides its place in the tables.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct MeshFacts {
-    cage: CageFacts,
+    pub cage: CageFacts,
     in_hull: bool,
     linear_tex_coords: bool,
     ptex_face_count: u32,
@@ -141,13 +168,8 @@ pub(crate) fn objects(descs: &[ObjectDesc], facts: &[MeshFacts], ranges: &[MeshR
     let mut objects = Vec::with_capacity(descs.len());
     for desc in descs {
         let (range, facts) = (&ranges[desc.mesh], &facts[desc.mesh]);
-        let flag = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
         let mut object = Object {
-            to_world: columns(&desc.to_world),
-            flags: flag(facts.in_hull, IN_HULL)
-                | flag(desc.hides_backs, HIDES_BACKS)
-                | flag(desc.is_mirrored(), MIRRORED)
-                | flag(facts.linear_tex_coords, LINEAR_TEX_COORDS),
+            flags: flag(facts.in_hull, IN_HULL) | flag(facts.linear_tex_coords, LINEAR_TEX_COORDS),
             first_slot: sizes.slots,
             first_mesh_slot: range.slots.start,
             vertex_count: range.cage_points.len() as u32,
@@ -164,6 +186,7 @@ pub(crate) fn objects(descs: &[ObjectDesc], facts: &[MeshFacts], ranges: &[MeshR
             map: NONE,
             ..Object::default()
         };
+        place(&mut object, desc);
         facts.cage.set(&mut object);
         objects.push(object);
         first_face += facts.ptex_face_count;

@@ -134,7 +134,7 @@ pub struct FrameNeeds {
     pub watertight: bool,
     /// Some objects are displaced.
     pub displaced: bool,
-    /// Dumps have texture coordinates.
+    /// Dumps, and what is shaded later, have texture coordinates.
     pub tex_coords: bool,
     /// Irregular faces, where refinement ends, are Gregory patches ([`SurfaceMethod::Gregory`], [`EndCap::Gregory`]).
     pub gregory: bool,
@@ -146,8 +146,14 @@ pub struct FrameNeeds {
     pub gregory_points: GregoryPoints,
     /// Their normals are those of the rational patches, not of their Bezier form.
     pub exact_normals: bool,
-    /// Dumps have colours.
+    /// Dumps, and what is shaded later, have colours.
     pub colors: bool,
+    /// Some cages deform.
+    pub deforms: bool,
+    /// It is asked where points are at the next moment.
+    pub moves: bool,
+    /// Some materials have holes: what is shaded later, and shadows.
+    pub cutouts: bool,
 }
 
 impl FrameNeeds {
@@ -167,6 +173,9 @@ impl FrameNeeds {
             gregory_points: GregoryPoints::TwoStage,
             exact_normals: false,
             colors: false,
+            deforms: false,
+            moves: false,
+            cutouts: false,
         }
     }
 }

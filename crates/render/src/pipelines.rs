@@ -13,13 +13,31 @@ use crate::options::{EndCap, Spacing, SurfaceMethod, View};
 use crate::program::stage;
 use crate::targets::{DEPTH_FORMAT, Layers};
 
-/// What a pass's last stage before rasterization makes: the shaders' variants `lean`, `layers` and `colors`, and `dump`.
+/// What a pass's last stage before rasterization makes: the shaders' variants `lean`, `layers`, `colors` and `shading`, and `dump`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Output {
     /// What images with these layers need; with none the normal alone.
     Image(Layers),
+    /// Depth alone: `lean`, or `shading` where materials have holes.
+    Depth,
     /// Captured by transform feedback.
     Dump,
+}
+
+/// The variants of a shader: lean, layers, colors, shading, dump.
+type Variants = [&'static ShaderModule; 5];
+
+/// The variant that makes what is asked for.
+fn pick(options: &PipelineOptions, [lean, layers, colors, shading, dump]: Variants) -> &'static ShaderModule {
+    match options.output {
+        Output::Image(Layers::None) => lean,
+        Output::Image(Layers::Geometry) => layers,
+        Output::Image(Layers::GeometryAndColors) => colors,
+        Output::Image(Layers::Shading) => shading,
+        Output::Depth if options.cutouts => shading,
+        Output::Depth => lean,
+        Output::Dump => dump,
+    }
 }
 
 /// What the pipelines are for.
@@ -50,6 +68,10 @@ pub(crate) struct PipelineOptions {
     pub exact_normals: bool,
     /// Colours are asked for.
     pub colors: bool,
+    /// It is asked where points are at the next moment.
+    pub moves: bool,
+    /// Some materials have holes.
+    pub cutouts: bool,
 }
 
 /// The pipeline of each kind of patch that the method has: each on a thread of its own, as drivers compile on the caller's.
@@ -92,32 +114,32 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
         },
         SpecConstant { id: shaders::gregory_patch_tesc::SPEC_STENCIL, bits: u32::from(options.stencils) },
         SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_COLORED, bits: u32::from(options.colors) },
+        SpecConstant { id: shaders::bspline_patch_colors_tese::SPEC_MOVING, bits: u32::from(options.moves) },
     ];
-    let view_constant =
-        [SpecConstant { id: shaders::surface_lean_frag::SPEC_VIEW, bits: options.view.constant(options.method) }];
+    let fragment = fragment_stage(options);
+    let fragment_constants = [
+        SpecConstant { id: shaders::surface_lean_frag::SPEC_VIEW, bits: options.view.constant(options.method) },
+        SpecConstant { id: shaders::surface_shading_frag::SPEC_TEX_COORDS, bits: u32::from(options.tex_coords) },
+    ];
+    let fragment_constants: Vec<SpecConstant> = fragment_constants
+        .into_iter()
+        .filter(|constant| fragment.is_some_and(|module| knows(module, constant)))
+        .collect();
     let geometry = geometry_stages(options, kind);
     let used: Vec<Vec<SpecConstant>> = geometry
         .iter()
         .map(|module| {
-            let knows = |constant: &&SpecConstant| module.spec_constants.iter().any(|known| known.id == constant.id);
             let is_patch = ["bspline_patch", "filling_quad", "gregory_patch", "acc_patch", "pm_patch", "uniform_quad"]
                 .iter()
                 .any(|stem| module.name.starts_with(stem));
-            patch_constants.iter().filter(|_| is_patch).filter(knows).copied().collect()
+            patch_constants.iter().filter(|constant| is_patch && knows(module, constant)).copied().collect()
         })
         .collect();
     let mut stages: Vec<_> = geometry.iter().zip(&used).map(|(module, used)| stage(module, used)).collect();
-    if options.wire {
-        stages.push(stage(&shaders::wire_frag::PROGRAM, &[]));
-    } else {
-        match options.output {
-            Output::Image(layers) => stages.push(stage(fragment_stage(layers), &view_constant)),
-            Output::Dump => {}
-        }
-    }
+    stages.extend(fragment.map(|module| stage(module, &fragment_constants)));
     let formats = match options.output {
         Output::Image(layers) => layers.color_formats(),
-        Output::Dump => Vec::new(),
+        Output::Depth | Output::Dump => Vec::new(),
     };
     let is_dump = options.output == Output::Dump;
     Ok(GraphicsPipeline::new(
@@ -145,38 +167,44 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
 
 /// The stages before rasterization.
 fn geometry_stages(options: &PipelineOptions, kind: PatchKind) -> Vec<&'static ShaderModule> {
-    let pick = |lean, layers, colors, dump| match options.output {
-        Output::Image(Layers::None) => lean,
-        Output::Image(Layers::Geometry) => layers,
-        Output::Image(Layers::GeometryAndColors) => colors,
-        Output::Dump => dump,
-    };
     if options.method == SurfaceMethod::Uniform {
         return vec![pick(
-            &shaders::uniform_quad_lean_vert::PROGRAM,
-            &shaders::uniform_quad_layers_vert::PROGRAM,
-            &shaders::uniform_quad_colors_vert::PROGRAM,
-            &shaders::uniform_quad_dump_vert::PROGRAM,
+            options,
+            [
+                &shaders::uniform_quad_lean_vert::PROGRAM,
+                &shaders::uniform_quad_layers_vert::PROGRAM,
+                &shaders::uniform_quad_colors_vert::PROGRAM,
+                &shaders::uniform_quad_shading_vert::PROGRAM,
+                &shaders::uniform_quad_dump_vert::PROGRAM,
+            ],
         )];
     }
     let list = &shaders::patch_list_vert::PROGRAM;
     if matches!(kind, PatchKind::Gregory | PatchKind::GregoryCut | PatchKind::Triangle | PatchKind::TriangleCut) {
         if let Some(rival) = options.method.rival() {
-            return rival_stages(list, rival, pick);
+            return rival_stages(list, rival, options);
         }
         let evaluation = if options.displaced {
             pick(
-                &shaders::gregory_patch_lean_maps_tese::PROGRAM,
-                &shaders::gregory_patch_layers_maps_tese::PROGRAM,
-                &shaders::gregory_patch_colors_maps_tese::PROGRAM,
-                &shaders::gregory_patch_dump_maps_tese::PROGRAM,
+                options,
+                [
+                    &shaders::gregory_patch_lean_maps_tese::PROGRAM,
+                    &shaders::gregory_patch_layers_maps_tese::PROGRAM,
+                    &shaders::gregory_patch_colors_maps_tese::PROGRAM,
+                    &shaders::gregory_patch_shading_maps_tese::PROGRAM,
+                    &shaders::gregory_patch_dump_maps_tese::PROGRAM,
+                ],
             )
         } else {
             pick(
-                &shaders::gregory_patch_lean_tese::PROGRAM,
-                &shaders::gregory_patch_layers_tese::PROGRAM,
-                &shaders::gregory_patch_colors_tese::PROGRAM,
-                &shaders::gregory_patch_dump_tese::PROGRAM,
+                options,
+                [
+                    &shaders::gregory_patch_lean_tese::PROGRAM,
+                    &shaders::gregory_patch_layers_tese::PROGRAM,
+                    &shaders::gregory_patch_colors_tese::PROGRAM,
+                    &shaders::gregory_patch_shading_tese::PROGRAM,
+                    &shaders::gregory_patch_dump_tese::PROGRAM,
+                ],
             )
         };
         return vec![list, &shaders::gregory_patch_tesc::PROGRAM, evaluation];
@@ -184,70 +212,93 @@ fn geometry_stages(options: &PipelineOptions, kind: PatchKind) -> Vec<&'static S
     if kind != PatchKind::Filling {
         let evaluation = if options.displaced {
             pick(
-                &shaders::bspline_patch_lean_maps_tese::PROGRAM,
-                &shaders::bspline_patch_layers_maps_tese::PROGRAM,
-                &shaders::bspline_patch_colors_maps_tese::PROGRAM,
-                &shaders::bspline_patch_dump_maps_tese::PROGRAM,
+                options,
+                [
+                    &shaders::bspline_patch_lean_maps_tese::PROGRAM,
+                    &shaders::bspline_patch_layers_maps_tese::PROGRAM,
+                    &shaders::bspline_patch_colors_maps_tese::PROGRAM,
+                    &shaders::bspline_patch_shading_maps_tese::PROGRAM,
+                    &shaders::bspline_patch_dump_maps_tese::PROGRAM,
+                ],
             )
         } else {
             pick(
-                &shaders::bspline_patch_lean_tese::PROGRAM,
-                &shaders::bspline_patch_layers_tese::PROGRAM,
-                &shaders::bspline_patch_colors_tese::PROGRAM,
-                &shaders::bspline_patch_dump_tese::PROGRAM,
+                options,
+                [
+                    &shaders::bspline_patch_lean_tese::PROGRAM,
+                    &shaders::bspline_patch_layers_tese::PROGRAM,
+                    &shaders::bspline_patch_colors_tese::PROGRAM,
+                    &shaders::bspline_patch_shading_tese::PROGRAM,
+                    &shaders::bspline_patch_dump_tese::PROGRAM,
+                ],
             )
         };
         return vec![list, &shaders::bspline_patch_tesc::PROGRAM, evaluation];
     }
     let evaluation = pick(
-        &shaders::filling_quad_lean_tese::PROGRAM,
-        &shaders::filling_quad_layers_tese::PROGRAM,
-        &shaders::filling_quad_colors_tese::PROGRAM,
-        &shaders::filling_quad_dump_tese::PROGRAM,
+        options,
+        [
+            &shaders::filling_quad_lean_tese::PROGRAM,
+            &shaders::filling_quad_layers_tese::PROGRAM,
+            &shaders::filling_quad_colors_tese::PROGRAM,
+            &shaders::filling_quad_shading_tese::PROGRAM,
+            &shaders::filling_quad_dump_tese::PROGRAM,
+        ],
     );
     vec![list, &shaders::filling_quad_tesc::PROGRAM, evaluation]
 }
 
-/// Those of ACC or Pm-patches; `pick` chooses by what they make.
-fn rival_stages(
-    list: &'static ShaderModule,
-    rival: Rival,
-    pick: impl Fn(
-        &'static ShaderModule,
-        &'static ShaderModule,
-        &'static ShaderModule,
-        &'static ShaderModule,
-    ) -> &'static ShaderModule,
-) -> Vec<&'static ShaderModule> {
+/// Those of ACC or Pm-patches.
+fn rival_stages(list: &'static ShaderModule, rival: Rival, options: &PipelineOptions) -> Vec<&'static ShaderModule> {
     let (control, evaluation) = match rival {
         Rival::Acc => (
             &shaders::acc_patch_tesc::PROGRAM,
             pick(
-                &shaders::acc_patch_lean_tese::PROGRAM,
-                &shaders::acc_patch_layers_tese::PROGRAM,
-                &shaders::acc_patch_colors_tese::PROGRAM,
-                &shaders::acc_patch_dump_tese::PROGRAM,
+                options,
+                [
+                    &shaders::acc_patch_lean_tese::PROGRAM,
+                    &shaders::acc_patch_layers_tese::PROGRAM,
+                    &shaders::acc_patch_colors_tese::PROGRAM,
+                    &shaders::acc_patch_shading_tese::PROGRAM,
+                    &shaders::acc_patch_dump_tese::PROGRAM,
+                ],
             ),
         ),
         Rival::Pm => (
             &shaders::pm_patch_tesc::PROGRAM,
             pick(
-                &shaders::pm_patch_lean_tese::PROGRAM,
-                &shaders::pm_patch_layers_tese::PROGRAM,
-                &shaders::pm_patch_colors_tese::PROGRAM,
-                &shaders::pm_patch_dump_tese::PROGRAM,
+                options,
+                [
+                    &shaders::pm_patch_lean_tese::PROGRAM,
+                    &shaders::pm_patch_layers_tese::PROGRAM,
+                    &shaders::pm_patch_colors_tese::PROGRAM,
+                    &shaders::pm_patch_shading_tese::PROGRAM,
+                    &shaders::pm_patch_dump_tese::PROGRAM,
+                ],
             ),
         ),
     };
     vec![list, control, evaluation]
 }
 
-/// The stage after rasterization.
-fn fragment_stage(layers: Layers) -> &'static ShaderModule {
-    match layers {
-        Layers::None => &shaders::surface_lean_frag::PROGRAM,
-        Layers::Geometry => &shaders::surface_layers_frag::PROGRAM,
-        Layers::GeometryAndColors => &shaders::surface_colors_frag::PROGRAM,
+/// Whether a shader has a specialization constant.
+fn knows(module: &ShaderModule, constant: &SpecConstant) -> bool {
+    module.spec_constants.iter().any(|known| known.id == constant.id)
+}
+
+/// The stage after rasterization, if there is one.
+fn fragment_stage(options: &PipelineOptions) -> Option<&'static ShaderModule> {
+    if options.wire {
+        return Some(&shaders::wire_frag::PROGRAM);
+    }
+    match options.output {
+        Output::Image(Layers::None) => Some(&shaders::surface_lean_frag::PROGRAM),
+        Output::Image(Layers::Geometry) => Some(&shaders::surface_layers_frag::PROGRAM),
+        Output::Image(Layers::GeometryAndColors) => Some(&shaders::surface_colors_frag::PROGRAM),
+        Output::Image(Layers::Shading) if options.cutouts => Some(&shaders::surface_cutout_frag::PROGRAM),
+        Output::Image(Layers::Shading) => Some(&shaders::surface_shading_frag::PROGRAM),
+        Output::Depth => options.cutouts.then_some(&shaders::surface_shadow_cutout_frag::PROGRAM),
+        Output::Dump => None,
     }
 }
 

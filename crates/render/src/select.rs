@@ -62,6 +62,9 @@ impl Select {
             clear(&frame.marks),
             clear(&frame.counts),
         ]);
+        if let Some(next) = &surface.motion {
+            encoder.transfer(&[copy(&next.cage, &next.points)]);
+        }
     }
 
     /// Records the stages: a dispatch a level, level 0 too, and seven; two more where there are n-gons, two fewer where

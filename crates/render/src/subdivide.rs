@@ -1,6 +1,6 @@
 //! The subdivide stage: points of each level from those before (FAS section 3.2). Shader: `glsl/subdivide.comp`.
 
-use planish_gpu::{ComputePipeline, Device, Encoder};
+use planish_gpu::{Buffer, ComputePipeline, Device, Encoder};
 use planish_shaders::subdivide_comp::{PROGRAM, Push};
 use planish_subdiv::tables::{LevelPoints, Tables};
 
@@ -24,24 +24,24 @@ impl Subdivide {
     }
 
     /// Records one dispatch a level (two where n-gons of many sides have their face points made first) over its rows in use,
-    /// and one for the hierarchical edits of a level that has any.
-    pub(crate) fn record(&self, encoder: &mut Encoder, surface: &Surface) {
+    /// and one for the hierarchical edits of a level that has any. `points`: of all levels, the cages' being there.
+    pub(crate) fn record(&self, encoder: &mut Encoder, surface: &Surface, points: &Buffer) {
         let first_items = surface.phases.first_items();
         for (level, phases) in surface.tables.levels.iter().zip(&surface.phases.of_level) {
             for phase in phases.clone().filter(|&phase| surface.phases.rows[phase][1] > 0) {
-                self.record_phase(encoder, surface, phase, first_items[phase]);
+                self.record_phase(encoder, surface, points, phase, first_items[phase]);
             }
             if !level.edits.is_empty() {
-                self.edits.record(encoder, surface, level.edits.clone());
+                self.edits.record(encoder, surface, points, level.edits.clone());
             }
         }
     }
 
-    fn record_phase(&self, encoder: &mut Encoder, surface: &Surface, phase: usize, first_item: u32) {
+    fn record_phase(&self, encoder: &mut Encoder, surface: &Surface, points: &Buffer, phase: usize, first_item: u32) {
         let (tables, heads) = (&surface.buffers, &surface.lists.heads);
         let list = LIST_PHASES + phase;
         let push = Push {
-            points: address(&surface.frame.points),
+            points: address(points),
             rows: address(&tables.rows),
             indices: address(&tables.indices),
             weights: address(&tables.weights),

@@ -14,11 +14,13 @@ use planish_subdiv::tables::{MeshRanges, Tables, TexTree};
 use crate::buffers::{FrameBuffers, ListBuffers, TableBuffers};
 use crate::camera::FrameCamera;
 use crate::colors::ColorBuffers;
+use crate::deform::{DeformBuffers, DeformationDesc, PoseDesc};
 use crate::density::frame_input;
 use crate::displacement::{DisplacementDesc, Maps, TexCoordBuffers};
 use crate::error::Error;
 use crate::lists::{Capacities, Phases, Status};
 use crate::marks::Marks;
+use crate::motion::{MotionBuffers, move_object};
 use crate::objects::{CageFacts, MeshFacts, ObjectDesc};
 use crate::options::{Culling, EndCap, FrameOptions, GregoryPoints, SurfaceMethod};
 use crate::upload::address;
@@ -117,9 +119,15 @@ pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preproc
         "colours that are subdivided as positions are",
     )?;
     let mut times = PreprocessTimes::default();
-    let mut parts = Vec::with_capacity(meshes.len());
-    for mesh in meshes {
+    let mut parts: Vec<Tables> = Vec::with_capacity(meshes.len());
+    for (index, mesh) in meshes.iter().enumerate() {
         let start = Instant::now();
+        // Poses of one character, say: tables know nothing of positions.
+        if let Some(twin) = meshes[..index].iter().position(|earlier| mesh.has_tables_of(earlier)) {
+            parts.push(parts[twin].clone());
+            times.tables += milliseconds(start);
+            continue;
+        }
         let refinement = Refinement::new(mesh, options)?;
         times.topology += milliseconds(start);
         let start = Instant::now();
@@ -148,10 +156,19 @@ pub struct Surface {
     pub(crate) maps: Maps,
     pub(crate) tex_coords: TexCoordBuffers,
     pub(crate) colors: ColorBuffers,
+    pub(crate) deform: Option<DeformBuffers>,
+    pub(crate) motion: Option<MotionBuffers>,
+    /// What is known of each mesh's cage, and by how much its map displaces.
+    cage_facts: Vec<CageFacts>,
+    displacement_bounds: Vec<f32>,
+    next_camera: Option<FrameCamera>,
+    pub(crate) crop: Option<[u32; 4]>,
     marks: Marks,
     density_scales: Vec<f32>,
     sub_pixel_bits: u32,
     times: PreprocessTimes,
+    /// Address of the materials that have holes, or 0.
+    materials: u64,
 }
 
 impl Surface {
@@ -209,10 +226,17 @@ impl Surface {
             maps: Maps::default(),
             tex_coords,
             colors,
+            deform: None,
+            motion: None,
+            cage_facts: facts.iter().map(|facts| facts.cage).collect(),
+            displacement_bounds: vec![0.0; meshes.len()],
+            next_camera: None,
+            crop: None,
             marks,
             density_scales,
             sub_pixel_bits,
             times,
+            materials: 0,
         };
         surface.write_scene()?;
         for (mesh, cage) in meshes.iter().enumerate() {
@@ -234,15 +258,94 @@ impl Surface {
         if positions.is_empty() {
             return Ok(());
         }
-        self.frame.cage.write(u64::from(range.start) * size_of::<[f32; 3]>() as u64, positions)?;
+        self.frame.cage.write(cage_offset(ranges), positions)?;
         // Objects are culled by the boxes around their cages, which have moved along.
         let neighbours = &self.tables.slots.neighbours;
         let edges = (0..range.len() as u32)
             .flat_map(|vertex| neighbours.of(ranges.slots.start + vertex).iter().map(move |&other| [vertex, other]));
         let facts = CageFacts::new(positions, edges);
+        self.cage_facts[mesh] = facts;
         for (object, _) in self.objects.iter_mut().zip(&self.object_meshes).filter(|(_, of)| **of == mesh) {
             facts.set(object);
         }
+        Ok(self.frame.objects.write(0, &self.objects)?)
+    }
+
+    /// Puts the objects in other places, for all frames submitted from now on. They are those that the surface was made with.
+    ///
+    /// # Panics
+    /// If there are not as many, or one has another mesh.
+    pub fn set_objects(&mut self, descs: &[ObjectDesc]) -> Result<(), Error> {
+        assert_eq!(descs.len(), self.objects.len(), "objects of the surface");
+        for ((object, &mesh), desc) in self.objects.iter_mut().zip(&self.object_meshes).zip(descs) {
+            assert_eq!(desc.mesh, mesh, "the mesh of an object");
+            crate::objects::place(object, desc);
+            self.cage_facts[mesh].set(object);
+            if object.map != planish_subdiv::topology::NONE {
+                crate::objects::displace(object, object.map, self.displacement_bounds[mesh]);
+            }
+        }
+        Ok(self.frame.objects.write(0, &self.objects)?)
+    }
+
+    /// Says how cages deform, one entry a mesh; until a pose is set all weights and joints are 0. Frames must be recorded anew then, by
+    /// stages that know of it ([`crate::FrameNeeds::deforms`]).
+    ///
+    /// # Panics
+    /// If a morph target or an influence names what is not there.
+    pub fn set_deformations(&mut self, device: &Device, descs: &[Option<DeformationDesc<'_>>]) -> Result<(), Error> {
+        self.deform = Some(DeformBuffers::new(device, descs, &self.meshes)?);
+        for (object, &mesh) in self.objects.iter_mut().zip(&self.object_meshes) {
+            crate::objects::deform(object, descs[mesh].is_some());
+        }
+        Ok(self.frame.objects.write(0, &self.objects)?)
+    }
+
+    /// Sets the pose of a mesh that deforms, for all frames submitted from now on.
+    ///
+    /// # Panics
+    /// If the surface has no deformations, or the pose is not one of the mesh's.
+    pub fn set_pose(&mut self, mesh: usize, pose: &PoseDesc<'_>) -> Result<(), Error> {
+        if let Some(points) = pose.points {
+            self.set_cage(mesh, points)?;
+        }
+        let deform = self.deform.as_ref().expect("a surface that deforms");
+        deform.pose.write(&deform.ranges[mesh], pose)
+    }
+
+    /// Makes room for the next moment of cages that deform: frames then say where their points go
+    /// ([`crate::FrameNeeds::moves`]). Frames must be recorded anew then.
+    pub fn prepare_motion(&mut self, device: &Device, meshes: &[&ControlMesh]) -> Result<(), Error> {
+        let Some(deform) = &self.deform else { return Ok(()) };
+        let motion = MotionBuffers::new(device, &self.tables, deform)?;
+        for (cage, ranges) in meshes.iter().zip(&self.meshes).filter(|(cage, _)| !cage.positions.is_empty()) {
+            motion.cage.write(cage_offset(ranges), &cage.positions)?;
+        }
+        self.motion = Some(motion);
+        self.write_scene()
+    }
+
+    /// Sets where a mesh that deforms is at the next moment.
+    ///
+    /// # Panics
+    /// If there is no room ([`Self::prepare_motion`]), or the pose is not one of the mesh's.
+    pub fn set_next_pose(&self, mesh: usize, pose: &PoseDesc<'_>) -> Result<(), Error> {
+        let motion = self.motion.as_ref().expect("room for the next moment");
+        if let Some(points) = pose.points {
+            assert_eq!(points.len(), self.meshes[mesh].cage_points.len(), "positions of cage {mesh}");
+            motion.cage.write(cage_offset(&self.meshes[mesh]), points)?;
+        }
+        let deform = self.deform.as_ref().expect("a surface that deforms");
+        motion.pose.write(&deform.ranges[mesh], pose)
+    }
+
+    /// Sets where objects and camera are at the next moment; they stay until then, and after [`Self::set_objects`].
+    pub fn set_motion(&mut self, now: &[ObjectDesc], next: &[ObjectDesc], camera: &FrameCamera) -> Result<(), Error> {
+        for ((object, now), next) in self.objects.iter_mut().zip(now).zip(next) {
+            let deforms = crate::objects::deforms(object) && self.motion.is_some();
+            move_object(object, &now.to_world, &next.to_world, deforms);
+        }
+        self.next_camera = Some(*camera);
         Ok(self.frame.objects.write(0, &self.objects)?)
     }
 
@@ -259,6 +362,7 @@ impl Surface {
     ) -> Result<(), Error> {
         assert!(self.desc.displaced, "a surface that is made to be displaced");
         let place = self.maps.add(device, map, cage, &self.tables.slots, &self.meshes[mesh])?;
+        self.displacement_bounds[mesh] = map.bound;
         for (object, _) in self.objects.iter_mut().zip(&self.object_meshes).filter(|(_, of)| **of == mesh) {
             crate::objects::displace(object, place, map.bound);
         }
@@ -286,6 +390,12 @@ impl Surface {
         self.write_scene()
     }
 
+    /// Says where the materials are that have holes ([`crate::FrameNeeds::cutouts`]).
+    pub(crate) fn set_materials(&mut self, address: u64) -> Result<(), Error> {
+        self.materials = address;
+        self.write_scene()
+    }
+
     /// Sets the values of the hierarchical edits that set or move points, for all frames submitted from now on: only
     /// their offsets are uploaded. The edits are the meshes', one mesh after the other in their order, with other values.
     ///
@@ -299,12 +409,27 @@ impl Surface {
         Ok(())
     }
 
+    /// Draws a part of the image alone: left, top, width and height in pixels. What is drawn there is what it is in the whole image, and
+    /// what lies outside is culled where anything is. Frames must be recorded anew then.
+    pub fn set_crop(&mut self, crop: Option<[u32; 4]>) {
+        self.crop = crop;
+    }
+
+    /// The part of the image that is drawn; none: all of it.
+    pub fn crop(&self) -> Option<[u32; 4]> {
+        self.crop
+    }
+
     /// Sets what all frames submitted from now on are to be: seen by this camera, selected and culled so. A recording of draws has
     /// its camera's matrix besides.
     pub fn set_frame(&self, camera: &FrameCamera, options: &FrameOptions) -> Result<(), Error> {
         self.frame.input.write(0, &[self.frame_input(camera, options)?])?;
-        let data =
-            FrameData { scene: address(&self.frame.scene), world_to_camera: camera.world_to_camera.to_cols_array_2d() };
+        let next = self.next_camera.as_ref().unwrap_or(camera);
+        let data = FrameData {
+            scene: address(&self.frame.scene),
+            world_to_camera: camera.world_to_camera.to_cols_array_2d(),
+            next_view_projection: next.view_projection().to_cols_array_2d(),
+        };
         Ok(self.frame.data.write(0, &[data])?)
     }
 
@@ -315,7 +440,14 @@ impl Surface {
             // What is tested are the points of Gregory patches.
             options.culling = Culling::Off;
         }
-        frame_input(camera, &options, self.desc.level, self.objects.len() as u32, self.sub_pixel_bits)
+        let input = frame_input(camera, &options, self.desc.level, self.objects.len() as u32, self.sub_pixel_bits)?;
+        Ok(match self.crop {
+            Some(crop) => FrameInput {
+                view: crate::emit::emit_view(&camera.cropped(crop), options.culling, self.sub_pixel_bits),
+                ..input
+            },
+            None => input,
+        })
     }
 
     /// Makes room for what did not fit in the last frame's lists; whether there was anything. Frames must be recorded anew then.
@@ -361,6 +493,8 @@ impl Surface {
             point_colors: address(&self.colors.points),
             limit_colors: address(&self.colors.limits),
             gregory_colors: address(&self.colors.gregory),
+            next_points: self.motion.as_ref().map_or_else(DeviceAddress::null, |next| address(&next.points)),
+            next_limits: self.motion.as_ref().map_or_else(DeviceAddress::null, |next| address(&next.limits)),
             slot_colors: address(&self.colors.slots),
             limit_seats: address(&tables.limit_seats),
             limit_tangents: address(&frame.limit_tangents),
@@ -385,6 +519,7 @@ impl Surface {
             first_active: self.capacities.first_active(),
             mark_group_count: self.marks.groups.len() as u32,
             first_limit_mark: self.marks.first_limit,
+            materials: [self.materials as u32, (self.materials >> 32) as u32],
         };
         Ok(frame.scene.write(0, &[data])?)
     }
@@ -453,6 +588,11 @@ impl Surface {
         Ok(device.download(&self.frame.points, 0, self.tables.point_count() as usize)?)
     }
 
+    /// The objects as the last frame left them; waits for the device. For tests.
+    pub fn download_objects(&self, device: &Device) -> Result<Vec<Object>, Error> {
+        Ok(device.download(&self.frame.objects, 0, self.objects.len())?)
+    }
+
     /// The limit points as the last frame left them; waits for the device. For tests.
     pub fn download_limits(&self, device: &Device) -> Result<Vec<shaders::LimitPoint>, Error> {
         Ok(device.download(&self.frame.limits, 0, self.tables.limit_point_count() as usize)?)
@@ -493,6 +633,11 @@ impl Surface {
         let offset = u64::from(range.start) * size_of::<shaders::DrawEntry>() as u64;
         Ok(device.download(&self.lists.entries, offset, range.len())?)
     }
+}
+
+/// Where a mesh's cage begins in the buffer of all.
+fn cage_offset(ranges: &MeshRanges) -> u64 {
+    u64::from(ranges.cage_points.start) * size_of::<[f32; 3]>() as u64
 }
 
 /// The trees of the meshes' first channels.

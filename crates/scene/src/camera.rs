@@ -1,14 +1,15 @@
 //! A pinhole camera, its matrices and the default view.
 use glam::camera::rh::proj::vulkan::perspective_infinite_reverse;
 use glam::dcamera::rh::view::look_at_mat4;
-use glam::{Mat4, Vec3};
+use glam::{DAffine3, DVec3, Mat4, Vec3};
 
+use crate::curve::Curve;
 use crate::{Bounds, Error};
 
 /// Default view: vertical field of view, degrees.
 pub(crate) const DEFAULT_FOV_Y_DEGREES: f32 = 45.0;
 /// Default view: direction from the centre of the box to the eye, not normalised.
-const DEFAULT_DIRECTION: glam::DVec3 = glam::DVec3::new(1.0, 0.6, 1.2);
+const DEFAULT_DIRECTION: DVec3 = DVec3::new(1.0, 0.6, 1.2);
 /// Default view: distance from the centre of the box to the eye, in diagonals of the box.
 const DEFAULT_DISTANCE: f64 = 1.1;
 /// Distance of the near plane, in diagonals of the box. A reversed depth in floating point has digits to spare.
@@ -33,6 +34,54 @@ pub struct Camera {
     pub near: f32,
     /// Distance of the far plane: infinite, as nothing is too far for a reversed depth in floating point.
     pub far: f32,
+    /// What is out of focus; none: nothing.
+    pub lens: Option<Lens>,
+    /// Where in the image the line of sight ends: the middle is moved right and up by these shares of half its width and height.
+    pub shift: [f32; 2],
+    /// What moves it; none: nothing.
+    pub rig: Option<CameraRig>,
+}
+
+/// A thin lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    /// Radius of the aperture, in world units: half the focal length over the f-number.
+    pub radius: f32,
+    /// Distance along the line of sight of what is in focus, in world units.
+    pub focus_distance: f32,
+}
+
+/// What a camera hangs on: it looks along -z of a node, +y upwards.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraRig {
+    /// Into [`crate::Scene::nodes`].
+    pub node: usize,
+    /// Vertical field of view, degrees.
+    pub fov_y_degrees: Curve<f64>,
+    /// See [`Lens::focus_distance`]; 0: nothing is out of focus.
+    pub focus_distance: Curve<f64>,
+    /// See [`Lens::radius`]; 0: nothing is out of focus.
+    pub lens_radius: Curve<f64>,
+    /// When the shutter opens and closes, in seconds from the frame's time; none: not said.
+    pub shutter: Option<[f64; 2]>,
+}
+
+impl CameraRig {
+    /// A pinhole camera on a node.
+    pub fn pinhole(node: usize, fov_y_degrees: f64) -> Self {
+        Self {
+            node,
+            fov_y_degrees: Curve::constant(fov_y_degrees),
+            focus_distance: Curve::constant(0.0),
+            lens_radius: Curve::constant(0.0),
+            shutter: None,
+        }
+    }
+
+    /// Whether its own values are the same at all times; its node may move.
+    pub fn is_constant(&self) -> bool {
+        [&self.fov_y_degrees, &self.focus_distance, &self.lens_radius].iter().all(|curve| curve.is_constant())
+    }
 }
 
 impl Camera {
@@ -70,7 +119,53 @@ impl Camera {
         if !(near > 0.0 && near.is_finite()) {
             return refuse(format!("a scene of size {diagonal}"), "a size above zero that a 32-bit float can hold");
         }
-        Ok(Self { name: name.to_owned(), eye, target, up, fov_y_degrees, near, far: f32::INFINITY })
+        Ok(Self {
+            name: name.to_owned(),
+            eye,
+            target,
+            up,
+            fov_y_degrees,
+            near,
+            far: f32::INFINITY,
+            lens: None,
+            shift: [0.0; 2],
+            rig: None,
+        })
+    }
+
+    /// A camera on a rig, at the scene's first moment. `diagonal` as of [`Self::new`].
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn rigged(
+        name: &str,
+        rig: CameraRig,
+        node_to_world: &DAffine3,
+        time: f64,
+        diagonal: f64,
+    ) -> Result<Self, Error> {
+        // Beyond any scene, so that the near plane follows from the diagonal.
+        let mut camera = Self::new(name, Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, DEFAULT_FOV_Y_DEGREES, diagonal)?;
+        camera.near = (NEAR * diagonal) as f32;
+        camera.rig = Some(rig.clone());
+        camera.placed(&rig, node_to_world, time)
+    }
+
+    /// The camera where its rig's node is.
+    pub(crate) fn placed(&self, rig: &CameraRig, node_to_world: &DAffine3, time: f64) -> Result<Self, Error> {
+        let eye = node_to_world.translation;
+        let direction = |axis: DVec3| node_to_world.matrix3.mul_vec3(axis).normalize_or_zero();
+        let focus = rig.focus_distance.at(time);
+        let (sight, up) = (direction(DVec3::NEG_Z), direction(DVec3::Y));
+        // As far away as the eye is from the origin: a nearer target would be lost in its digits.
+        let distance = if focus > 0.0 && focus.is_finite() { focus } else { 1.0 + eye.length() };
+        let target = eye + distance * sight;
+        let fov = rig.fov_y_degrees.at(time) as f32;
+        let placed = Self::new(&self.name, eye.as_vec3(), target.as_vec3(), up.as_vec3(), fov, 1.0)?;
+        let radius = rig.lens_radius.at(time);
+        let has_lens = radius > 0.0 && focus > 0.0 && focus.is_finite() && radius.is_finite();
+        let lens = has_lens.then_some(Lens { radius: radius as f32, focus_distance: focus as f32 });
+        Ok(Self { near: self.near, shift: self.shift, rig: self.rig.clone(), lens, ..placed })
     }
 
     /// A camera with up +Y; where it looks along Y, with up -Z when it looks down and +Z when it looks up.
@@ -109,7 +204,11 @@ impl Camera {
 
     /// Camera to Vulkan's clip space: y down, depth 1 at the near plane and 0 at infinity. `aspect` is width / height.
     pub fn projection_matrix(&self, aspect: f32) -> Mat4 {
-        perspective_infinite_reverse(self.fov_y_degrees.to_radians(), aspect, self.near)
+        let mut projection = perspective_infinite_reverse(self.fov_y_degrees.to_radians(), aspect, self.near);
+        // Depth is -z: what is at the middle moves left and down (y is down in clip space) by the shift.
+        projection.z_axis.x += self.shift[0];
+        projection.z_axis.y -= self.shift[1];
+        projection
     }
 }
 
@@ -224,5 +323,25 @@ mod tests {
         let up = Camera::upright("c", Vec3::NEG_Y, Vec3::ZERO, 45.0, 1.0).unwrap();
         assert_eq!((down.up, up.up), (Vec3::NEG_Z, Vec3::Z));
         assert_eq!(Camera::upright("c", Vec3::X, Vec3::ZERO, 45.0, 1.0).unwrap().up, Vec3::Y);
+    }
+
+    #[test]
+    fn a_camera_on_a_node_looks_along_its_negative_z_and_moves_with_it() {
+        let node = DAffine3::from_translation(DVec3::new(1.0, 2.0, 3.0))
+            * DAffine3::from_rotation_y(std::f64::consts::FRAC_PI_2);
+        let mut rig = CameraRig::pinhole(0, 30.0);
+        (rig.focus_distance, rig.lens_radius) = (Curve::constant(4.0), Curve::constant(0.5));
+        let camera = Camera::rigged("c", rig, &node, 0.0, 10.0).unwrap();
+        assert_eq!((camera.eye, camera.fov_y_degrees, camera.near), (Vec3::new(1.0, 2.0, 3.0), 30.0, 1e-3));
+        assert!((camera.target - Vec3::new(-3.0, 2.0, 3.0)).length() < 1e-5, "{}", camera.target);
+        assert_eq!(camera.lens, Some(Lens { radius: 0.5, focus_distance: 4.0 }));
+    }
+
+    #[test]
+    fn a_shift_moves_the_middle_of_the_image_right_and_up() {
+        let camera = Camera { shift: [0.5, 0.25], ..sample() };
+        let clip = camera.projection_matrix(1.0) * camera.view_matrix() * camera.target.extend(1.0);
+        let seen = clip.truncate() / clip.w;
+        assert!((seen.x + 0.5).abs() < 1e-6 && (seen.y - 0.25).abs() < 1e-6, "{seen}");
     }
 }

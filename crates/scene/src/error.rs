@@ -7,7 +7,7 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum Error {
     /// The file is missing or cannot be read.
-    #[error("{}: cannot be read: {source}; expected an .obj or .json file", .path.display())]
+    #[error("{}: cannot be read: {source}; expected an .obj, .json, .gltf, .glb or USD (.usd, .usda, .usdc, .usdz) file", .path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -15,14 +15,20 @@ pub enum Error {
         source: io::Error,
     },
     /// The path names a directory.
-    #[error("{}: found a directory, expected an .obj or .json file", .path.display())]
+    #[error("{}: found a directory, expected an .obj, .json, .gltf, .glb or USD (.usd, .usda, .usdc, .usdz) file", .path.display())]
     Directory {
         /// The directory.
         path: PathBuf,
     },
     /// No reader for the file's extension.
-    #[error("{}: found a file of unknown format, expected an .obj or .json file", .path.display())]
+    #[error("{}: found a file of unknown format, expected an .obj, .json, .gltf, .glb or USD (.usd, .usda, .usdc, .usdz) file", .path.display())]
     UnknownFormat {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A USD file for a program without the reader of them.
+    #[error("{}: found a USD file, expected another: this program was built without USD (cargo feature usd)", .path.display())]
+    WithoutUsd {
         /// The file.
         path: PathBuf,
     },
@@ -65,6 +71,16 @@ pub enum Error {
     Displacement {
         /// The map's file.
         path: PathBuf,
+        /// What is there.
+        found: String,
+        /// What should be there.
+        expected: String,
+    },
+    /// An image of a texture or an environment that cannot be read.
+    #[error("image {image}: found {found}, expected {expected}")]
+    Image {
+        /// What the scene calls it.
+        image: String,
         /// What is there.
         found: String,
         /// What should be there.

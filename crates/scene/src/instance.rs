@@ -13,9 +13,20 @@ pub struct Instance {
     /// Object to world. Its determinant is not 0, and negative where the instance is mirrored: its faces are then clockwise
     /// seen from outside.
     pub transform: Affine3A,
+    /// What it hangs on, into [`crate::Scene::nodes`]; none: it stays where `transform` puts it. With a node, `transform` is where
+    /// that is at the scene's first moment.
+    pub node: Option<usize>,
+    /// What it is made of: into [`crate::Scene::materials`], one a slot of the mesh ([`crate::Mesh::slots`]); none: the default
+    /// material. Slots beyond the end have none.
+    pub materials: Vec<Option<usize>>,
 }
 
 impl Instance {
+    /// A mesh in a place, of the default material.
+    pub fn placed(name: impl Into<String>, mesh: usize, transform: Affine3A) -> Self {
+        Self { name: name.into(), mesh, transform, node: None, materials: Vec::new() }
+    }
+
     /// The box around the corners of `mesh_bounds` in world space; `mesh_bounds` itself, to the bit, where the mesh stands
     /// as it is.
     pub fn bounds(&self, mesh_bounds: &Bounds) -> Bounds {
@@ -60,7 +71,7 @@ mod tests {
     use super::*;
 
     fn instance(transform: Affine3A) -> Instance {
-        Instance { name: "i".to_owned(), mesh: 0, transform }
+        Instance::placed("i", 0, transform)
     }
 
     fn sample() -> Bounds {

@@ -1,6 +1,6 @@
 //! Files to scenes: meshes, where they stand, and cameras.
 //!
-//! [`load`] picks the reader by the file's extension and returns a [`Scene`]; [`read_obj`] and [`read_json`] do the same
+//! [`load`] picks the reader by the file's extension and returns a [`Scene`]; [`read_obj`], [`read_json`] and [`read_gltf`] do the same
 //! from memory.
 //! Everything that is read is checked here: a scene that comes back names no vertex or face that it lacks, and has
 //! only finite coordinates. What is odd but harmless is a [`Warning`] in the scene; what is wrong is an [`Error`] that
@@ -12,41 +12,78 @@
 //! | `instance` | where a mesh stands |
 //! | `camera` | a pinhole camera, its matrices and the default view |
 //! | `path` | a camera that moves from frame to frame |
+//! | `curve` | a value that changes over time |
+//! | `node` | frames of reference that move |
+//! | `deformation` | vertices that move: points over time, morph targets, skins |
+//! | `pose` | a scene at one time |
+//! | `material` | what surfaces are made of |
+//! | `texture` | image files to texels |
+//! | `light` | what lights them |
 //! | `bounds` | a bounding box |
 //! | `obj` | the OBJ reader, with OpenSubdiv's subdivision tags |
+//! | `gltf` | the glTF 2.0 reader |
+//! | `usd` | the USD reader, behind the cargo feature `usd` |
 //! | `displacement` | displacement maps, ready for upload |
 //! | `json` | the reader of our own scene files, which place meshes of OBJ files |
 //! | `error` | what can go wrong |
 mod bounds;
 mod camera;
+pub mod curve;
+pub mod deformation;
 pub mod displacement;
 mod error;
+mod gltf;
 mod instance;
 mod json;
+pub mod light;
+pub mod material;
+pub mod node;
 mod obj;
 mod path;
+mod pose;
 mod scene;
+pub mod texture;
+#[cfg(feature = "usd")]
+mod usd;
 
+pub use self::gltf::read_gltf;
+#[cfg(feature = "usd")]
+pub use self::usd::read_usd;
 pub use bounds::Bounds;
-pub use camera::Camera;
+pub use camera::{Camera, CameraRig, Lens};
+pub use curve::{Curve, Interpolation};
+pub use deformation::{Deformation, MeshPose};
 pub use error::Error;
 pub use instance::Instance;
 pub use json::{MAX_INSTANCES, read_json};
+pub use light::{Environment, Light, LightKind, LightPose};
+pub use material::{AlphaMode, ImageContent, ImageSource, Material, Texture, TextureRef, Wrap};
+pub use node::Node;
 pub use path::{CameraPath, Key, MAX_FRAMES};
+pub use pose::{InstancePose, Pose};
 pub use scene::{Mesh, Scene, Warning};
+pub use texture::{DecodedImage, Pixels, decode_image};
 
 use std::path::Path;
 
 use glam::Affine3A;
 
 /// How files are read.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LoadOptions {
     /// Drop degenerate faces (a vertex twice, fewer than three vertices) with a warning instead of refusing the file.
     pub repair: bool,
+    /// The name of the animation to read of a file that has several (glTF); none: its first.
+    pub clip: Option<String>,
+    /// Pairs of triangles of files that have nothing else (glTF) become quads where they make good ones.
+    pub quads: bool,
 }
 
-/// Reads a scene file: an `.obj`, or a `.json` and the OBJ files that it names.
+/// Extensions of USD files.
+const USD_EXTENSIONS: [&str; 4] = ["usd", "usda", "usdc", "usdz"];
+
+/// Reads a scene file: an `.obj`, a `.json` and the OBJ files that it names, a `.gltf` or `.glb` and the files that it names, or a
+/// USD file (`.usd`, `.usda`, `.usdc`, `.usdz`) and the layers that it names.
 ///
 /// # Errors
 /// When a file cannot be read, is of no known format, or its content is wrong (see [`Error`]).
@@ -54,6 +91,16 @@ pub fn load(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Scene, Erro
     let path = path.as_ref();
     if has_extension(path, "json") {
         return read_json(path, &file_bytes(path)?, options);
+    }
+    if has_extension(path, "gltf") || has_extension(path, "glb") {
+        return read_gltf(path, &file_bytes(path)?, options);
+    }
+    if USD_EXTENSIONS.iter().any(|extension| has_extension(path, extension)) {
+        refuse_directory(path)?;
+        #[cfg(feature = "usd")]
+        return read_usd(path, options);
+        #[cfg(not(feature = "usd"))]
+        return Err(Error::WithoutUsd { path: path.to_owned() });
     }
     read_obj(path, &obj_bytes(path)?, options)
 }
@@ -65,7 +112,7 @@ pub fn load(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Scene, Erro
 pub fn read_obj(path: impl AsRef<Path>, bytes: &[u8], options: &LoadOptions) -> Result<Scene, Error> {
     let path = path.as_ref();
     let (mesh, warnings) = read_mesh(path, bytes, options)?;
-    let instance = Instance { name: mesh.name.clone(), mesh: 0, transform: Affine3A::IDENTITY };
+    let instance = Instance::placed(mesh.name.clone(), 0, Affine3A::IDENTITY);
     Ok(Scene { name: stem(path), meshes: vec![mesh], instances: vec![instance], warnings, ..Scene::default() })
 }
 

@@ -77,16 +77,24 @@ impl CameraPath {
         self.try_camera(frame).expect("every frame was tried when the path was made")
     }
 
-    fn try_camera(&self, frame: u32) -> Result<Camera, Error> {
-        let [eye, target] = self.places(frame).map(|place| place.as_vec3());
+    /// The camera between two frames: where it is after so many frames, which need not be whole.
+    ///
+    /// # Errors
+    /// When it would see nothing there ([`Camera::new`]).
+    pub fn camera_between(&self, frames: f64) -> Result<Camera, Error> {
+        let [eye, target] = self.places(frames).map(|place| place.as_vec3());
         Camera::upright(&self.name, eye, target, self.fov_y_degrees, self.diagonal)
     }
 
+    fn try_camera(&self, frame: u32) -> Result<Camera, Error> {
+        self.camera_between(f64::from(frame))
+    }
+
     /// Eye and target of a frame.
-    fn places(&self, frame: u32) -> [DVec3; 2] {
-        let last_frame = self.frame_count - 1;
+    fn places(&self, frame: f64) -> [DVec3; 2] {
+        let last_frame = f64::from(self.frame_count - 1);
         // In units of keys; exact at a key whose frame is a whole number.
-        let time = f64::from(frame.min(last_frame)) * (self.keys.len() - 1) as f64 / f64::from(last_frame.max(1));
+        let time = frame.clamp(0.0, last_frame) * (self.keys.len() - 1) as f64 / last_frame.max(1.0);
         let before = (time.floor() as usize).min(self.keys.len() - 1);
         let share = time - before as f64;
         let eye = |key: &Key| key.eye.as_dvec3();

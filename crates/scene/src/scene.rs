@@ -5,7 +5,10 @@ use planish_subdiv::mesh::ControlMesh;
 
 use crate::displacement::DisplacementRequest;
 use crate::error::name_list;
-use crate::{Bounds, Camera, CameraPath, Error, Instance};
+use crate::light::{Environment, Light};
+use crate::material::{ImageSource, Material, Texture};
+use crate::node::Node;
+use crate::{Bounds, Camera, CameraPath, Deformation, Error, Instance};
 
 /// A scene: meshes, where they stand, and the cameras to see them with.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,6 +24,24 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// The file's own camera paths; an OBJ file has none.
     pub paths: Vec<CameraPath>,
+    /// Frames of reference, each after its parent.
+    pub nodes: Vec<Node>,
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// Textures of the materials.
+    pub textures: Vec<Texture>,
+    /// Images of the textures and of the environment.
+    pub images: Vec<ImageSource>,
+    /// Lights.
+    pub lights: Vec<Light>,
+    /// Light from all around.
+    pub environment: Option<Environment>,
+    /// Names of the animations that the file holds; which one is read is [`crate::LoadOptions::clip`].
+    pub clips: Vec<String>,
+    /// First and last moment of what moves, in seconds; none where nothing does.
+    pub time_range: Option<[f64; 2]>,
+    /// Frames a second, where the file says.
+    pub frames_per_second: Option<f64>,
     /// What is odd in the file but does not keep it from being read, in the order in which it was noticed.
     pub warnings: Vec<Warning>,
 }
@@ -34,6 +55,12 @@ pub struct Mesh {
     pub control_mesh: ControlMesh,
     /// The displacement map that a scene file asks for; [`crate::displacement::load_displacement`] reads it.
     pub displacement: Option<DisplacementRequest>,
+    /// Names of the slots that an instance has a material in each of; none: one without a name.
+    pub slots: Vec<String>,
+    /// The slot of each face, into `slots`; empty: all are of the first.
+    pub face_slots: Vec<u32>,
+    /// How the vertices move; none: they stay. A mesh with a skin has one instance.
+    pub deformation: Option<Deformation>,
 }
 
 /// Something odd in a file that did not keep it from being read.

@@ -195,6 +195,20 @@ impl ControlMesh {
         }))
     }
 
+    /// Whether another mesh is the same but for positions, densities and colours, on which no table depends.
+    pub fn has_tables_of(&self, other: &Self) -> bool {
+        // What differs most often comes first.
+        self.positions.len() == other.positions.len()
+            && self.face_vertices == other.face_vertices
+            && self.face_sizes == other.face_sizes
+            && self.creases == other.creases
+            && self.corners == other.corners
+            && self.holes == other.holes
+            && self.edits == other.edits
+            && self.options == other.options
+            && self.face_varying == other.face_varying
+    }
+
     /// Number of Ptex faces: a quad is one, any other face one a side.
     pub fn ptex_face_count(&self) -> u64 {
         self.face_sizes.iter().map(|&n| if n == 4 { 1 } else { u64::from(n) }).sum()

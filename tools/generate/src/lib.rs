@@ -21,6 +21,8 @@
 //! | `distances` | a camera's way from a model |
 //! | `framing` | from how far a camera sees things |
 //! | `scene_text` | a scene file under construction, and its JSON text |
+//! | `gltf_text` | a glTF file under construction, as JSON and as GLB |
+//! | `sprout` | the glTF scene that shows it all |
 //! | `hero` | the scene that shows it all |
 pub mod cage;
 pub mod creased;
@@ -29,6 +31,7 @@ pub mod distances;
 pub mod edits;
 pub mod flight;
 pub mod framing;
+pub mod gltf_text;
 pub mod hero;
 pub mod large;
 pub mod lattice;
@@ -41,5 +44,6 @@ pub mod seams;
 pub mod sectors;
 pub mod sheets;
 pub mod solids;
+pub mod sprout;
 pub mod tags;
 pub mod terrain;

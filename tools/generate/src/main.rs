@@ -130,10 +130,14 @@ fn run() -> Result<()> {
     match Arguments::parse().command {
         Command::Scenes { folder } => {
             for scene in scenes::all() {
-                write(&folder.join(scene.file_name()), &scene.text())?;
+                write(&folder.join(scene.file_name()), scene.text())?;
             }
             for (name, scene) in scenes::placed() {
-                write(&folder.join(format!("{name}.json")), &scene.to_json())?;
+                write(&folder.join(format!("{name}.json")), scene.to_json())?;
+            }
+            for (name, scene) in scenes::gltf() {
+                write(&folder.join(format!("{name}.gltf")), scene.to_gltf())?;
+                write(&folder.join(format!("{name}.glb")), scene.to_glb())?;
             }
             Ok(())
         }
@@ -141,18 +145,18 @@ fn run() -> Result<()> {
             ensure!((0.0..=1.0).contains(&irregular), "--irregular: found {irregular}, expected 0 to 1");
             let (mesh, scene) = pair(&out, "obj")?;
             write_cage(&mesh, "Hills.", &terrain::terrain(faces, irregular))?;
-            write(&scene, &flight::scene(faces, file_name(&mesh)?).to_json())
+            write(&scene, flight::scene(faces, file_name(&mesh)?).to_json())
         }
         Command::Crowd { count, out } => {
             let (mesh, scene) = pair(&out, "json")?;
             write_cage(&mesh, "A small figure.", &crowd::figure())?;
-            write(&scene, &crowd::scene(count, file_name(&mesh)?).to_json())
+            write(&scene, crowd::scene(count, file_name(&mesh)?).to_json())
         }
         Command::Orbit { model, frames, out } => {
             let scene = planish_scene::load(&model, &LoadOptions::default())?;
             let file = seen_from(&out, &model)?;
             let text = distances::scene(&scene, &file, frames).with_context(|| model.display().to_string())?;
-            write(&out, &text.to_json())
+            write(&out, text.to_json())
         }
         Command::Blob { faces, irregular, creased, out } => {
             ensure!((0.0..=1.0).contains(&irregular), "--irregular: found {irregular}, expected 0 to 1");
@@ -215,13 +219,13 @@ fn seen_from(other: &Path, file: &Path) -> Result<String> {
 }
 
 fn write_cage(path: &Path, comment: &str, cage: &Cage) -> Result<()> {
-    write(path, &cage.to_obj(comment))
+    write(path, cage.to_obj(comment))
 }
 
 /// Writes a file beside its place and renames it, so that none is left half written.
-fn write(path: &Path, text: &str) -> Result<()> {
+fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
     let beside = path.with_added_extension("part");
-    std::fs::write(&beside, text).with_context(|| format!("{}: cannot be written", beside.display()))?;
+    std::fs::write(&beside, content).with_context(|| format!("{}: cannot be written", beside.display()))?;
     std::fs::rename(&beside, path).with_context(|| format!("{}: cannot be written", path.display()))
 }
 

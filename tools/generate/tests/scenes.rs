@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use planish_generate::cage::Cage;
 use planish_generate::random_cage::manifold::is_manifold;
-use planish_generate::scenes::{SceneFile, all, placed};
+use planish_generate::scenes::{SceneFile, all, gltf, placed};
 use planish_generate::{large, sectors, solids, terrain};
 
 fn folder() -> PathBuf {
@@ -122,12 +122,24 @@ fn committed_files_are_what_the_generator_makes() {
         let committed = std::fs::read_to_string(folder().join(format!("{name}.json"))).unwrap();
         assert!(committed == scene.to_json(), "{name}.json is stale: planish-generate scenes scenes");
     }
+    for (name, scene) in gltf() {
+        let committed = |extension: &str| std::fs::read(folder().join(format!("{name}.{extension}"))).unwrap();
+        assert!(
+            committed("gltf") == scene.to_gltf().into_bytes(),
+            "{name}.gltf is stale: planish-generate scenes scenes"
+        );
+        assert!(committed("glb") == scene.to_glb(), "{name}.glb is stale: planish-generate scenes scenes");
+    }
     let on_disk = |wanted: &str| {
         let entries = std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path());
         entries.filter(|path| path.extension().is_some_and(|extension| extension == wanted)).count()
     };
-    let made = [files.len(), placed().len()];
-    assert_eq!([on_disk("obj"), on_disk("json")], made, "scenes/ has a file that the generator does not make");
+    let made = [files.len(), placed().len(), gltf().len(), gltf().len()];
+    assert_eq!(
+        ["obj", "json", "gltf", "glb"].map(on_disk),
+        made,
+        "scenes/ has a file that the generator does not make"
+    );
 }
 
 #[test]

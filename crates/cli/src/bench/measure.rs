@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::gregory::fetched_points;
 use super::{Bench, median};
 use crate::cage::Cage;
+use crate::moment::Moment;
 use crate::offline::{Images, Plan, Session, frame_camera, frame_needs, frame_options};
 use crate::stats::{FrameStats, GpuStats, PatchStats};
 
@@ -87,7 +88,7 @@ impl<'a> Timed<'a> {
         let arguments = bench.arguments;
         let camera = cage.default_view()?;
         let Setting { method, level, tess_factor, crease_patches, watertight, gregory_points, is_culled } = setting;
-        let objects = cage.objects(&camera);
+        let objects = Moment::seen_by(cage, &camera, 0.0).objects;
         let mut plan = Plan {
             frame_camera: frame_camera(&camera, arguments.size),
             needs: FrameNeeds {
@@ -179,12 +180,14 @@ fn medians(level: u32, frames: &[FrameStats]) -> Measured {
         triangles: last.triangles,
         points: last.points,
         gpu_ms: GpuStats {
+            animate: of(|frame| frame.gpu_ms.animate),
             density: of(|frame| frame.gpu_ms.density),
             select: of(|frame| frame.gpu_ms.select),
             subdivide: of(|frame| frame.gpu_ms.subdivide),
             limit: of(|frame| frame.gpu_ms.limit),
             emit: of(|frame| frame.gpu_ms.emit),
             draw: of(|frame| frame.gpu_ms.draw),
+            shade: of(|frame| frame.gpu_ms.shade),
             total: of(|frame| frame.gpu_ms.total),
         },
         wall_ms: of(|frame| frame.wall_ms),

@@ -27,7 +27,7 @@ use anyhow::Result;
 use planish_gpu::Device;
 use serde::Serialize;
 
-use crate::args::BenchArguments;
+use crate::args::{BenchArguments, SceneArguments};
 use crate::cage::Cage;
 use crate::console::{Console, print_output};
 use crate::offline::{check_validation, open_device};
@@ -114,7 +114,7 @@ impl Bench<'_> {
     fn scenes<R: Row>(&self, device: Option<&Device>, rows: impl Fn(&Cage) -> Result<Vec<R>>) -> Result<()> {
         let mut scenes = Vec::new();
         for path in &self.arguments.scenes {
-            let mut cage = Cage::load(path, self.arguments.repair, self.console)?;
+            let mut cage = Cage::load(&SceneArguments::plain(path.clone(), self.arguments.repair), self.console)?;
             cage.displace(&self.arguments.displacement, self.console)?;
             let scene = SceneReport {
                 scene: path.display().to_string(),

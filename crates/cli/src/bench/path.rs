@@ -11,6 +11,7 @@ use serde::Serialize;
 use super::chart::{Chart, Series};
 use super::{Bench, Row, median};
 use crate::cage::Cage;
+use crate::moment::Moment;
 use crate::offline::{Images, Plan, PlanSetting, Session, frame_camera, frame_options};
 use crate::stats::{CallStats, FrameStats};
 use crate::text_table::milliseconds_text;
@@ -113,7 +114,7 @@ impl Method {
             exact_normals: false,
             options: frame_options(method, Density::EdgePixels(arguments.edge_pixels), false),
         };
-        let mut plan = Plan::of(cage, &setting, cameras)?;
+        let mut plan = Plan::of(cage, &setting, cameras.iter().map(|camera| Ok(Moment::seen_by(cage, camera, 0.0))))?;
         plan.cull(arguments.no_cull);
         let mut session = Session::new(device, cage, &plan, bench.console)?;
         let images = session.images(View::Shaded, Layers::None)?;

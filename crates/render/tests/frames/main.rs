@@ -2,6 +2,8 @@
 //! and densities, how much is computed, and that closed surfaces have no cracks. On the real device, with the validation layer and its synchronization checks on.
 
 mod culling;
+mod darkroom;
+mod deform;
 mod fuzz;
 mod gregory;
 mod gregory_culling;
@@ -15,6 +17,8 @@ mod random;
 mod repeat;
 mod rivals;
 mod seen;
+mod shading;
+mod shadows;
 mod twin;
 mod watertight;
 mod world;

@@ -173,6 +173,7 @@ pub fn scene(name: &str, hides_backs: bool) -> (Vec<ControlMesh>, Vec<ObjectDesc
         mesh: instance.mesh,
         to_world: instance.transform,
         hides_backs,
+        is_hidden: false,
     };
     let objects = scene.instances.iter().map(object).collect();
     (scene.meshes.into_iter().map(|mesh| mesh.control_mesh).collect(), objects)
@@ -204,6 +205,7 @@ fn objects() -> (Vec<ControlMesh>, Vec<ObjectDesc>) {
             Vec3::from(at),
         ),
         hides_backs: mesh == 1,
+        is_hidden: false,
     };
     let objects = vec![
         object(0, [1.0; 3], [0.0, 1.0, 0.0], 0.0, [0.0; 3]),

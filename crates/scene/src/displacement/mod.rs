@@ -17,7 +17,7 @@
 //! | `meeting`, `stitch` | where the tiles of Ptex faces meet, and one value for all that meet there, level by level |
 mod exr_file;
 mod faces;
-mod limits;
+pub(crate) mod limits;
 mod map;
 mod meeting;
 mod png_file;

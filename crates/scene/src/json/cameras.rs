@@ -4,10 +4,10 @@ use std::collections::HashSet;
 use glam::Vec3;
 
 use super::Fault;
-use super::text::{CameraText, PathText};
+use super::text::{CameraText, LensText, PathText};
 use crate::camera::DEFAULT_FOV_Y_DEGREES;
 use crate::obj::quoted;
-use crate::{Camera, CameraPath, Error, Key};
+use crate::{Camera, CameraPath, Error, Key, Lens};
 
 /// The cameras that a file lists, in a scene of the given diagonal.
 pub fn cameras(texts: &[CameraText], diagonal: f64) -> Result<Vec<Camera>, Fault> {
@@ -17,12 +17,21 @@ pub fn cameras(texts: &[CameraText], diagonal: f64) -> Result<Vec<Camera>, Fault
         |text| &text.name,
         |text| {
             let [eye, target] = [text.eye, text.target].map(Vec3::from);
-            match text.up {
+            let camera = match text.up {
                 Some(up) => Camera::new(&text.name, eye, target, up.into(), text.fov, diagonal),
                 None => Camera::upright(&text.name, eye, target, text.fov, diagonal),
-            }
+            };
+            Ok(Camera { lens: text.lens.as_ref().map(lens).transpose()?, ..camera? })
         },
     )
+}
+
+fn lens(text: &LensText) -> Result<Lens, Error> {
+    if !(text.radius >= 0.0 && text.radius.is_finite() && text.focus > 0.0 && text.focus.is_finite()) {
+        let found = format!("a lens of radius {} focused at {}", text.radius, text.focus);
+        return Err(Error::Camera { found, expected: "a radius of 0 or more and a distance above 0" });
+    }
+    Ok(Lens { radius: text.radius, focus_distance: text.focus })
 }
 
 /// The camera paths that a file lists, in a scene of the given diagonal.

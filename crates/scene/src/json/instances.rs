@@ -68,7 +68,7 @@ fn instance(name: String, mesh: usize, transform: &DAffine3, mesh_bounds: &Bound
     let too_far = |found: String| Fault::new("", found, format!("points within {MAX_COORDINATE:e}"));
     let kept =
         rounded(transform).ok_or_else(|| too_far(format!("a place at {:?}", transform.translation.to_array())))?;
-    let instance = Instance { name, mesh, transform: kept };
+    let instance = Instance::placed(name, mesh, kept);
     let bounds = instance.bounds(mesh_bounds);
     let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
     if reach > f64::from(MAX_COORDINATE) {

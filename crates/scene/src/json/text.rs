@@ -109,6 +109,17 @@ pub struct CameraText {
     pub up: Option<[f32; 3]>,
     /// Vertical field of view, degrees.
     pub fov: f32,
+    pub lens: Option<LensText>,
+}
+
+/// A camera's thin lens.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LensText {
+    /// Of the aperture, in world units.
+    pub radius: f32,
+    /// Distance of what is in focus, in world units.
+    pub focus: f32,
 }
 
 /// A camera that moves.

@@ -118,7 +118,7 @@ impl Reader {
         };
         apply::apply(&self.tags, &face_map, &mut control_mesh, &mut self.warnings)?;
         let name = self.object_name.unwrap_or_else(|| name.to_owned());
-        let mesh = Mesh { name, control_mesh, displacement: None };
+        let mesh = Mesh { name, control_mesh, ..Mesh::default() };
         Ok((mesh, self.warnings.into_vec()))
     }
 

@@ -13,7 +13,7 @@ pub fn read(text: impl AsRef<[u8]>) -> Result<Scene, Error> {
 }
 
 pub fn repair(text: &str) -> Scene {
-    read_obj("name.obj", text.as_bytes(), &LoadOptions { repair: true }).unwrap()
+    read_obj("name.obj", text.as_bytes(), &LoadOptions { repair: true, ..LoadOptions::default() }).unwrap()
 }
 
 /// The one mesh of a file that must be read without a warning.

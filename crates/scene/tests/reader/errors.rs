@@ -109,7 +109,7 @@ fn repair_keeps_texture_coordinates_with_their_faces() {
 
 #[test]
 fn repair_does_not_save_a_file_of_degenerate_faces_only() {
-    let options = planish_scene::LoadOptions { repair: true };
+    let options = planish_scene::LoadOptions { repair: true, ..planish_scene::LoadOptions::default() };
     let error = planish_scene::read_obj("a.obj", format!("{TRIANGLE}f 1 2\n").as_bytes(), &options).unwrap_err();
     assert_eq!(error.to_string(), "a.obj: found no faces, expected lines `f 1 2 3 ..`");
 }

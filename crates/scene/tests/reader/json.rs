@@ -49,7 +49,7 @@ fn repair_applies_to_the_meshes_and_their_warnings_name_the_file() {
     let fault = "cube.obj: line 15: found a face with vertex 1 twice, expected different vertices";
     assert!(strict.contains("scene.json: meshes[0].file: ") && strict.ends_with(fault), "{strict}");
     let path = folder.path().join("scene.json");
-    let scene = read_json(path, text.as_bytes(), &LoadOptions { repair: true }).unwrap();
+    let scene = read_json(path, text.as_bytes(), &LoadOptions { repair: true, ..LoadOptions::default() }).unwrap();
     assert_eq!(scene.meshes[0].control_mesh.face_sizes.len(), 6);
     let warning = scene.warnings[0].to_string();
     assert!(warning.ends_with("cube.obj: line 15: a face with vertex 1 twice: dropped"), "{warning}");

@@ -1,6 +1,6 @@
 //! Cameras and camera paths of scene files.
 use glam::Vec3;
-use planish_scene::Scene;
+use planish_scene::{Lens, Scene};
 
 use crate::common::{assert_scene_refused, scene};
 
@@ -29,6 +29,20 @@ fn cameras_are_those_of_the_file_with_the_scenes_near_plane() {
     // The cube's diagonal is 2 sqrt 3.
     assert!((tilted.near - 2e-4 * 3f32.sqrt()).abs() < 1e-9);
     assert_eq!(scene.camera(Some("above")).unwrap().up, Vec3::NEG_Z);
+}
+
+#[test]
+fn a_camera_has_the_lens_of_the_file() {
+    let camera = |lens: &str| {
+        format!(r#""cameras": [{{ "name": "a", "eye": [0, 0, 9], "target": [0, 0, 0], "fov": 30{lens} }}]"#)
+    };
+    let lens = |text: &str| scene_with(&camera(text)).cameras[0].lens;
+    assert_eq!(lens(r#", "lens": { "radius": 0.5, "focus": 8 }"#), Some(Lens { radius: 0.5, focus_distance: 8.0 }));
+    assert_eq!(lens(""), None);
+    let bad = text(&camera(r#", "lens": { "radius": -1, "focus": 8 }"#));
+    let expected =
+        "cameras[0]: found a lens of radius -1 focused at 8, expected a radius of 0 or more and a distance above 0";
+    assert_scene_refused(&bad, expected);
 }
 
 #[test]

@@ -25,7 +25,7 @@ fn assert_element_refused(fields: &str, message: &str) {
 #[test]
 fn an_obj_file_is_one_instance_as_it_stands_with_the_bounds_of_its_points() {
     let scene = read(CUBE).unwrap();
-    let identity = Instance { name: "name".to_owned(), mesh: 0, transform: Affine3A::IDENTITY };
+    let identity = Instance::placed("name", 0, Affine3A::IDENTITY);
     assert_eq!(scene.instances, [identity]);
     assert_eq!(scene.bounds(), Bounds::of(scene.meshes[0].control_mesh.positions.iter().copied()));
 }

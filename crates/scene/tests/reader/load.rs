@@ -23,7 +23,10 @@ fn an_obj_file_is_loaded_whatever_the_case_of_its_extension() {
 fn a_missing_file_is_named() {
     let message = message(load("no/such/file.obj", &LoadOptions::default()));
     assert!(message.starts_with("no/such/file.obj: cannot be read: "), "{message}");
-    assert!(message.ends_with("; expected an .obj or .json file"), "{message}");
+    assert!(
+        message.ends_with("; expected an .obj, .json, .gltf, .glb or USD (.usd, .usda, .usdc, .usdz) file"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -31,7 +34,10 @@ fn a_directory_is_not_a_scene() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.obj");
     std::fs::create_dir(&path).unwrap();
-    let expected = format!("{}: found a directory, expected an .obj or .json file", path.display());
+    let expected = format!(
+        "{}: found a directory, expected an .obj, .json, .gltf, .glb or USD (.usd, .usda, .usdc, .usdz) file",
+        path.display()
+    );
     assert_eq!(message(load(&path, &LoadOptions::default())), expected);
 }
 
@@ -41,7 +47,10 @@ fn files_of_other_formats_are_refused_with_what_is_accepted() {
     for name in ["a.fbx", "a", "a.obj.gz"] {
         let path = folder.path().join(name);
         std::fs::write(&path, CUBE).unwrap();
-        let expected = format!("{}: found a file of unknown format, expected an .obj or .json file", path.display());
+        let expected = format!(
+            "{}: found a file of unknown format, expected an .obj, .json, .gltf, .glb or USD (.usd, .usda, .usdc, .usdz) file",
+            path.display()
+        );
         assert_eq!(message(load(&path, &LoadOptions::default())), expected);
     }
 }

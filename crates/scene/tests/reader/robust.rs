@@ -24,7 +24,7 @@ fn everything() -> String {
 /// Reads bytes; whatever is accepted must be fit to be subdivided, and errors must be one line.
 fn read_and_check(bytes: &[u8]) {
     for repair in [false, true] {
-        match read_obj("a.obj", bytes, &LoadOptions { repair }) {
+        match read_obj("a.obj", bytes, &LoadOptions { repair, ..LoadOptions::default() }) {
             Ok(scene) => scene.meshes.iter().for_each(|mesh| {
                 mesh.control_mesh.validate().unwrap();
             }),

@@ -13,6 +13,8 @@ mod vessel;
 
 use glam::DVec3;
 
+pub(crate) use shape::{profile, smooth_step};
+
 use crate::cage::Cage;
 
 /// How deep the anvil has sunk into the stump.

@@ -17,7 +17,9 @@ mod triangles;
 mod uvs;
 
 use crate::cage::Cage;
+use crate::gltf_text::GltfText;
 use crate::scene_text::SceneText;
+use crate::sprout;
 
 /// A mesh file of `scenes/`.
 pub struct SceneFile {
@@ -68,4 +70,9 @@ pub fn all() -> Vec<SceneFile> {
 /// All scene files of `scenes/`: their stems and what stands in them.
 pub fn placed() -> Vec<(&'static str, SceneText)> {
     vec![("several", several::scene())]
+}
+
+/// The glTF scenes of `scenes/` by name: each is written as `.gltf` and as `.glb`.
+pub fn gltf() -> Vec<(&'static str, GltfText)> {
+    vec![("sprout", sprout::scene())]
 }
