@@ -101,7 +101,8 @@ vec3 sharp_position(uint sharp_edges, BorderPoint border, vec4 nu, vec4 nv)
         uint other = uint(findLSB(rest));
         uint corner = edge == 0u && other == 3u ? 0u : other;
         const uint PLACES[4] = uint[4](5u, 6u, 10u, 9u);
-        return control_point[PLACES[corner]];
+        // Threads that are not here have no corner, but a software driver reads their elements of arrays too.
+        return control_point[PLACES[corner & 3u]];
     }
     vec3 q[4];
     vec4 n = (edge & 1u) == 0u ? nu : nv;

@@ -37,8 +37,9 @@ vec3 point_color(uint place, PatchInfo info)
 
 void main()
 {
-    uvec2 grid = uvec2(round(2.0 * gl_TessCoord.xy));
-    uint place = grid == uvec2(1u) ? fan_and_object.x : PLACES[3 * grid.y + grid.x];
+    // Within the arrays for threads without a point too: a software driver reads for all.
+    uvec2 grid = uvec2(clamp(round(2.0 * gl_TessCoord.xy), 0.0, 2.0));
+    uint place = (grid == uvec2(1u) ? fan_and_object.x : PLACES[3 * grid.y + grid.x]) & 7u;
     vec3 shading = DISPLACED ? shading_normal[place] : limit_normal[place];
     vec2 st = TEX_COORDS ? tex_coord[place] : vec2(0.0);
     PatchInfo info = PatchInfo(patch_words.x, patch_words.y, patch_words.z);

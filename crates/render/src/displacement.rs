@@ -188,7 +188,8 @@ impl TexCoordBuffers {
             &or_none(patches, 16 * tables.patches.len()),
             &or_none(faces, 8 * tables.irregular.len()),
             &[],
-            &[],
+            // Until it is given coordinates a surface has none, whatever its shaders look up.
+            &vec![NONE; tables.ptex_faces.len()],
         )
     }
 
