@@ -44,18 +44,18 @@ fn surface_desc(arguments: &InfoArguments, cage: &Cage) -> Result<SurfaceDesc> {
     let surface = &arguments.surface;
     match surface.asked_max_level {
         Some(level) if surface.tess.is_none() && surface.edge_pixels.is_none() => {
-            surface.check_available()?;
             let crease_patches = surface.crease_patches.into();
             let gregory_points = surface.gregory.into();
-            let method = surface.method()?;
+            let method = surface.method();
             let desc = SurfaceDesc {
                 method,
                 // One patch a face of the cage: nothing is refined.
-                level: if method.is_one_patch_a_face() { 0 } else { level },
+                level: if method.is_one_patch_a_face() || method == SurfaceMethod::Table { 0 } else { level },
                 crease_patches,
                 end_cap: surface.end_cap.into(),
                 displaced: false,
                 gregory_points,
+                scheme: surface.scheme()?,
             };
             check_gregory(cage, &desc)?;
             Ok(desc)
@@ -339,6 +339,10 @@ impl StencilInfo {
 /// Patches of each level where every irregularity is isolated to the last one.
 fn patch_counts(desc: &SurfaceDesc, made: &Preprocessed) -> Vec<PatchCounts> {
     let mut counts = vec![PatchCounts::default(); made.tables.last_level as usize + 1];
+    if desc.method == SurfaceMethod::Table {
+        counts[made.tables.last_level as usize].table = made.tables.basis.patches.len() as u32;
+        return counts;
+    }
     if desc.method == SurfaceMethod::Uniform {
         counts[made.tables.last_level as usize].filling = made.tables.filling.len() as u32;
         return counts;

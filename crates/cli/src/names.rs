@@ -17,6 +17,7 @@ pub enum MethodName {
     Acc,
     /// Pm-patches, to compare with: closed meshes of quads
     Pm,
+    /// Basis function tables over the cage subdivided once: any scheme
     Table,
     Uniform,
 }
@@ -111,8 +112,14 @@ pub enum MetricName {
 /// Subdivision schemes by name.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum SchemeName {
+    /// Faces of any number of sides
     CatmullClark,
+    /// Triangles; by method table
     Loop,
+    /// Triangles and quads (Stam and Loop 2003); by method table
+    LoopStam,
+    /// Triangles, interpolated (Modified Butterfly, Zorin et al. 1996); by method table
+    Butterfly,
     Bilinear,
 }
 

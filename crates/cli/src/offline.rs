@@ -14,6 +14,7 @@ use planish_render::{
 use planish_scene::{Camera, Lens, Pose};
 use planish_subdiv::ControlMesh;
 use planish_subdiv::refine::CreasePatches;
+use planish_subdiv::scheme::Scheme;
 
 use crate::args::{DeviceArguments, SurfaceArguments, ViewArguments};
 use crate::cage::{Cage, milliseconds};
@@ -27,6 +28,7 @@ use crate::values::FrameRate;
 /// What a plan is made for.
 pub struct PlanSetting {
     pub method: SurfaceMethod,
+    pub scheme: Scheme,
     /// No irregularity is isolated deeper.
     pub max_level: u32,
     pub crease_patches: CreasePatches,
@@ -96,10 +98,10 @@ impl Plan {
     }
 
     fn setting(surface: &SurfaceArguments, view: &ViewArguments) -> Result<PlanSetting> {
-        surface.check_available()?;
-        let method = surface.method()?;
+        let method = surface.method();
         Ok(PlanSetting {
             method,
+            scheme: surface.scheme()?,
             max_level: surface.max_level(),
             crease_patches: surface.crease_patches.into(),
             end_cap: surface.end_cap.into(),
@@ -136,7 +138,9 @@ impl Plan {
         }
         let (camera, objects) = first.expect("a frame at least");
         let is_gregory = setting.method.is_one_patch_a_face();
-        let level = if is_gregory { 0 } else { isolation_level(density, setting.max_level) };
+        // Tables are over the cage subdivided once.
+        let is_table = setting.method == SurfaceMethod::Table;
+        let level = if is_gregory || is_table { 0 } else { isolation_level(density, setting.max_level) };
         // Stencils are over the cage: end caps lie deeper.
         let gregory_points =
             if setting.method == SurfaceMethod::Gregory { setting.gregory_points } else { GregoryPoints::TwoStage };
@@ -147,6 +151,7 @@ impl Plan {
             end_cap: setting.end_cap,
             displaced: cage.is_displaced(),
             gregory_points,
+            scheme: setting.scheme,
         };
         let needs = FrameNeeds {
             watertight: setting.watertight,
@@ -158,6 +163,7 @@ impl Plan {
             gregory_points,
             exact_normals: setting.exact_normals,
             colors: cage.has_colors(),
+            table: is_table,
             deforms: cage.deforms(),
             placed: is_placed,
             ..frame_needs(setting.spacing, density, &objects)
@@ -183,6 +189,17 @@ impl Plan {
         let hides = |object: &ObjectDesc| object.hides_backs && !object.is_mirrored();
         self.options.culling == Culling::UnseenAndBacks && self.objects.iter().all(hides)
     }
+}
+
+/// Refuses what tables do not have.
+pub fn check_table(cage: &Cage, plan: &Plan) -> Result<()> {
+    if plan.desc.method != SurfaceMethod::Table {
+        return Ok(());
+    }
+    if cage.is_displaced() {
+        bail!("method table draws the limit surface: expected no displacement map");
+    }
+    Ok(())
 }
 
 /// Refuses what Gregory patches do not have, for surfaces that have some.
@@ -279,6 +296,7 @@ impl Session {
             bail!("{}: method uniform draws the limit surface: expected no displacement map", named());
         }
         check_gregory(cage, &plan.desc).with_context(named)?;
+        check_table(cage, plan).with_context(named)?;
         check_motion(cage, plan).with_context(named)?;
         let made = preprocess(&cage.meshes(), &plan.desc).with_context(named)?;
         let mut surface = Surface::new(device, &cage.meshes(), &plan.objects, plan.desc, made).with_context(named)?;

@@ -17,6 +17,7 @@ use crate::lists::{Capacities, KIND_COUNT, LIST_COUNT, LIST_PHASES, Phases, sum_
 use crate::marks::Marks;
 use crate::objects::ObjectSizes;
 use crate::options::SurfaceMethod;
+use crate::table::BasisBuffers;
 use crate::upload::{array, mapped, table};
 
 /// What depends on connectivity alone.
@@ -48,6 +49,7 @@ pub(crate) struct TableBuffers {
     pub stars: [Buffer; 2],
     pub density_scales: Buffer,
     pub mark_groups: Buffer,
+    pub basis: BasisBuffers,
 }
 
 impl TableBuffers {
@@ -92,6 +94,7 @@ impl TableBuffers {
             stars: lists(device, "stars", &star_marks)?,
             density_scales: table(device, "density scales", density_scales)?,
             mark_groups: table(device, "mark groups", &marks.groups)?,
+            basis: BasisBuffers::new(device, &tables.basis)?,
         })
     }
 
@@ -123,6 +126,7 @@ impl TableBuffers {
             &self.mark_groups,
         ];
         all.extend(self.neighbours.iter().chain(&self.rings).chain(&self.stars));
+        all.extend(self.basis.all());
         all
     }
 }
@@ -234,7 +238,7 @@ impl ListBuffers {
     ) -> Result<Self, Error> {
         let row_counts: Vec<u32> = phases.rows.iter().map(|&[_, count]| count).collect();
         let mut heads = capacities.heads(&row_counts);
-        if method == SurfaceMethod::Uniform {
+        if matches!(method, SurfaceMethod::Uniform | SurfaceMethod::Table) {
             // Every row is in use.
             for (head, &count) in heads[LIST_PHASES..].iter_mut().zip(&row_counts) {
                 let groups = planish_gpu::groups_for(count, crate::lists::CHUNK);

@@ -35,6 +35,7 @@ pub mod shading;
 pub mod spokes;
 pub mod subdivide;
 mod surface;
+mod table;
 mod targets;
 mod upload;
 pub mod visibility;

@@ -20,6 +20,8 @@ pub enum SurfaceMethod {
     Pm,
     /// Global table-driven refinement drawn as triangles: the baseline of FAS section 8.1.
     Uniform,
+    /// Basis function tables over the cage subdivided once (Hollaender and Boubekeur 2010): any scheme.
+    Table,
 }
 
 impl SurfaceMethod {
@@ -33,7 +35,7 @@ impl SurfaceMethod {
         match self {
             Self::Acc => Some(Rival::Acc),
             Self::Pm => Some(Rival::Pm),
-            Self::Dfas | Self::Fas | Self::Gregory | Self::Uniform => None,
+            Self::Dfas | Self::Fas | Self::Gregory | Self::Uniform | Self::Table => None,
         }
     }
 }
@@ -154,6 +156,8 @@ pub struct FrameNeeds {
     pub moves: bool,
     /// Some materials have holes: what is shaded later, and shadows.
     pub cutouts: bool,
+    /// Faces are evaluated by table ([`SurfaceMethod::Table`]).
+    pub table: bool,
 }
 
 impl FrameNeeds {
@@ -176,6 +180,7 @@ impl FrameNeeds {
             deforms: false,
             moves: false,
             cutouts: false,
+            table: false,
         }
     }
 }

@@ -129,7 +129,7 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
     let used: Vec<Vec<SpecConstant>> = geometry
         .iter()
         .map(|module| {
-            let is_patch = ["bspline_patch", "filling_quad", "gregory_patch", "acc_patch", "pm_patch", "uniform_quad"]
+            let is_patch = ["bspline_patch", "filling_quad", "gregory_patch", "acc_patch", "pm_patch", "uniform_quad", "table_patch"]
                 .iter()
                 .any(|stem| module.name.starts_with(stem));
             patch_constants.iter().filter(|constant| is_patch && knows(module, constant)).copied().collect()
@@ -180,6 +180,19 @@ fn geometry_stages(options: &PipelineOptions, kind: PatchKind) -> Vec<&'static S
         )];
     }
     let list = &shaders::patch_list_vert::PROGRAM;
+    if kind == PatchKind::Table {
+        let evaluation = pick(
+            options,
+            [
+                &shaders::table_patch_lean_tese::PROGRAM,
+                &shaders::table_patch_layers_tese::PROGRAM,
+                &shaders::table_patch_colors_tese::PROGRAM,
+                &shaders::table_patch_shading_tese::PROGRAM,
+                &shaders::table_patch_dump_tese::PROGRAM,
+            ],
+        );
+        return vec![list, &shaders::table_patch_tesc::PROGRAM, evaluation];
+    }
     if matches!(kind, PatchKind::Gregory | PatchKind::GregoryCut | PatchKind::Triangle | PatchKind::TriangleCut) {
         if let Some(rival) = options.method.rival() {
             return rival_stages(list, rival, options);
@@ -317,5 +330,6 @@ fn pass_name(options: &PipelineOptions, kind: PatchKind) -> &'static str {
         (_, PatchKind::GregoryCut) => "cut Gregory quads",
         (_, PatchKind::Triangle) => "Gregory triangles",
         (_, PatchKind::TriangleCut) => "cut Gregory triangles",
+        (_, PatchKind::Table) => "table patches",
     }
 }

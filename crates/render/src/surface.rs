@@ -9,6 +9,7 @@ use planish_shaders::{DeviceAddress, DrawHead, FrameCounts, FrameData, FrameInpu
 use planish_subdiv::ControlMesh;
 use planish_subdiv::mesh::{HierarchicalEdit, VertexInterpolation};
 use planish_subdiv::refine::{CreasePatches, RefineOptions, Refinement};
+use planish_subdiv::scheme::Scheme;
 use planish_subdiv::tables::{MeshRanges, Tables, TexTree};
 
 use crate::buffers::{FrameBuffers, ListBuffers, TableBuffers};
@@ -40,6 +41,8 @@ pub struct SurfaceDesc {
     pub displaced: bool,
     /// How the control points of Gregory patches are made.
     pub gregory_points: GregoryPoints,
+    /// Subdivision scheme; all methods but [`SurfaceMethod::Table`] know Catmull-Clark alone.
+    pub scheme: Scheme,
 }
 
 impl SurfaceDesc {
@@ -475,6 +478,11 @@ impl Surface {
             stencils: address(&tables.stencil_faces),
             stencil_points: address(&tables.stencil_rings),
             stencil_weights: address(&tables.stencil_weights),
+            table_patches: address(&tables.basis.patches),
+            table_edges: address(&tables.basis.edges),
+            table_controls: address(&tables.basis.controls),
+            table_weights: address(&tables.basis.weights),
+            table_tangents: address(&tables.basis.tangents),
             ptex_faces: address(&tables.ptex_faces),
             neighbour_first: address(&tables.neighbours[0]),
             neighbours: address(&tables.neighbours[1]),
@@ -519,7 +527,9 @@ impl Surface {
             first_active: self.capacities.first_active(),
             mark_group_count: self.marks.groups.len() as u32,
             first_limit_mark: self.marks.first_limit,
+            table_level: self.tables.basis.level,
             materials: [self.materials as u32, (self.materials >> 32) as u32],
+            ..SceneData::default()
         };
         Ok(frame.scene.write(0, &[data])?)
     }

@@ -17,6 +17,7 @@ pub mod patch;
 pub mod refine;
 mod ring;
 pub mod rules;
+pub mod scheme;
 pub mod selection;
 mod sharpness;
 pub mod stencil;

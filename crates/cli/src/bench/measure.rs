@@ -4,6 +4,7 @@ use anyhow::Result;
 use planish_gpu::{Device, SubmitReport};
 use planish_render::{Density, EndCap, FrameNeeds, GregoryPoints, Layers, SurfaceDesc, SurfaceMethod, View};
 use planish_subdiv::refine::CreasePatches;
+use planish_subdiv::scheme::Scheme;
 use serde::Serialize;
 
 use super::gregory::fetched_points;
@@ -109,6 +110,7 @@ impl<'a> Timed<'a> {
                 end_cap: EndCap::Quad,
                 displaced: cage.is_displaced(),
                 gregory_points,
+                scheme: Scheme::CatmullClark,
             },
             options: frame_options(method, Density::Tess(tess_factor), false),
         };

@@ -3,6 +3,7 @@
 //! Points of all levels live in one array, the cage's first. Everything here depends on connectivity alone and costs
 //! O(irregular faces x depth); nothing is composed down to the cage.
 
+mod basis;
 mod face_varying;
 mod gregory;
 mod gregory_stencils;
@@ -24,6 +25,7 @@ use crate::refine::Refinement;
 use crate::stencil::{SharedWeights, StencilTable, has_large_faces};
 
 pub use crate::selection::PatchCounts;
+pub use basis::{BasisEdge, BasisPatch, BasisTable, TABLE_TRIANGLE};
 pub use face_varying::{FaceVaryingEvaluator, FaceVaryingPatch, FaceVaryingTable, TexTree};
 pub use gregory::{EdgeOwner, GregoryFace, GregoryKind, GregoryTable, RivalSpokeRows, Spoke};
 pub use gregory_stencils::{Connectivity, GregoryStencils, MAX_RING_POINTS, ROWS_PER_CORNER, StencilFace};
@@ -83,6 +85,8 @@ pub struct Tables {
     pub filling: Vec<FillingQuad>,
     /// The values of face-varying channels, refined to the end.
     pub face_varying: Vec<FaceVaryingTable>,
+    /// Faces that are evaluated by table.
+    pub basis: BasisTable,
     /// No irregular face of this level is refined, unless it is forced.
     pub max_level: u32,
     /// The deepest level.

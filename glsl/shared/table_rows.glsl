@@ -1,0 +1,66 @@
+// Points of the surface as rows of a table (Hollaender and Boubekeur 2010, equation 1): relative to the first control, which keeps the
+// digits of nearby points. Included where `push` is the draw's.
+#ifndef PLANISH_TABLE_ROWS
+#define PLANISH_TABLE_ROWS
+#include "frame.glsl"
+
+// A point in the mesh's own space, and its unit normal; or 0 where no tangents are asked for.
+struct TablePoint {
+    vec3 position;
+    vec3 normal;
+};
+
+// Where a table and what it weighs begin.
+struct TableRange {
+    uint first_control;
+    uint control_count;
+    uint first_weight;
+};
+
+TablePoint table_row(SceneTables scene, TableRange range, uint row)
+{
+    precise vec3 origin = scene.v.points.v[scene.v.table_controls.v[range.first_control]];
+    precise vec3 position = vec3(0.0);
+    precise vec3 along_u = vec3(0.0);
+    precise vec3 along_v = vec3(0.0);
+    uint first = range.first_weight + row * range.control_count;
+    for (uint i = 1u; i < range.control_count; ++i) {
+        precise vec3 offset = scene.v.points.v[scene.v.table_controls.v[range.first_control + i]] - origin;
+        vec2 slope = scene.v.table_tangents.v[first + i];
+        position = position + scene.v.table_weights.v[first + i] * offset;
+        along_u = along_u + slope.x * offset;
+        along_v = along_v + slope.y * offset;
+    }
+    position = origin + position;
+    return TablePoint(position, unit_normal(along_u, along_v));
+}
+
+// The same at the next moment, the position alone.
+vec3 next_table_row(SceneTables scene, TableRange range, uint row)
+{
+    vec3 origin = scene.v.next_points.v[scene.v.table_controls.v[range.first_control]];
+    vec3 position = origin;
+    uint first = range.first_weight + row * range.control_count;
+    for (uint i = 1u; i < range.control_count; ++i) {
+        vec3 offset = scene.v.next_points.v[scene.v.table_controls.v[range.first_control + i]] - origin;
+        position += scene.v.table_weights.v[first + i] * offset;
+    }
+    return position;
+}
+
+// Half way between two points.
+TablePoint table_middle(TablePoint a, TablePoint b)
+{
+    precise vec3 position = 0.5 * (a.position + b.position);
+    precise vec3 normal = 0.5 * (a.normal + b.normal);
+    return TablePoint(position, normal);
+}
+
+// From one point to another.
+TablePoint table_between(TablePoint from, TablePoint to, float t)
+{
+    precise vec3 position = from.position + t * (to.position - from.position);
+    precise vec3 normal = from.normal + t * (to.normal - from.normal);
+    return TablePoint(position, unit_vector(normal));
+}
+#endif
