@@ -25,6 +25,7 @@ pub mod limit;
 pub mod lists;
 mod marks;
 mod motion;
+mod moving;
 pub mod objects;
 pub mod options;
 mod pipelines;
