@@ -9,9 +9,9 @@ use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
 use planish_film::{Compression, ToneMap};
 use planish_gpu::DeviceOptions;
-use planish_subdiv::scheme::Scheme;
 use planish_render::{Density, SurfaceMethod};
 use planish_scene::LoadOptions;
+use planish_subdiv::scheme::Scheme;
 
 use crate::aov::AovList;
 use crate::frames::FrameRange;

@@ -129,9 +129,17 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
     let used: Vec<Vec<SpecConstant>> = geometry
         .iter()
         .map(|module| {
-            let is_patch = ["bspline_patch", "filling_quad", "gregory_patch", "acc_patch", "pm_patch", "uniform_quad", "table_patch"]
-                .iter()
-                .any(|stem| module.name.starts_with(stem));
+            let is_patch = [
+                "bspline_patch",
+                "filling_quad",
+                "gregory_patch",
+                "acc_patch",
+                "pm_patch",
+                "uniform_quad",
+                "table_patch",
+            ]
+            .iter()
+            .any(|stem| module.name.starts_with(stem));
             patch_constants.iter().filter(|constant| is_patch && knows(module, constant)).copied().collect()
         })
         .collect();

@@ -69,7 +69,10 @@ pub(crate) struct EmitTable {
 impl EmitTable {
     pub fn new(device: &Device, needs: &FrameNeeds) -> Result<Self, Error> {
         let spec = [
-            SpecConstant { id: shaders::emit_table_comp::SPEC_BATCH_VERTICES, bits: crate::emit::batch_vertices(device) },
+            SpecConstant {
+                id: shaders::emit_table_comp::SPEC_BATCH_VERTICES,
+                bits: crate::emit::batch_vertices(device),
+            },
             SpecConstant { id: shaders::emit_table_comp::SPEC_PLACED, bits: u32::from(needs.placed) },
             SpecConstant { id: shaders::emit_table_comp::SPEC_CULL, bits: u32::from(needs.culls) },
         ];
