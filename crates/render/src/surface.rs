@@ -91,6 +91,9 @@ pub struct Preprocessed {
     pub times: PreprocessTimes,
 }
 
+/// Level of tables: 32 segments a side of a face of level 1, 64 a side of the cage's.
+const TABLE_LEVEL: u32 = 5;
+
 /// Refuses what schemes that are there to compare with have no part in.
 fn refuse_rival(desc: &SurfaceDesc, is_asked: bool, what: &'static str) -> Result<(), Error> {
     match desc.method.rival().filter(|_| is_asked) {
@@ -128,6 +131,11 @@ pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preproc
         // Poses of one character, say: tables know nothing of positions.
         if let Some(twin) = meshes[..index].iter().position(|earlier| mesh.has_tables_of(earlier)) {
             parts.push(parts[twin].clone());
+            times.tables += milliseconds(start);
+            continue;
+        }
+        if desc.method == SurfaceMethod::Table {
+            parts.push(Tables::of_basis(mesh, desc.scheme, TABLE_LEVEL)?);
             times.tables += milliseconds(start);
             continue;
         }

@@ -6,6 +6,7 @@
 //! makes of them) and [`eval`] (f64 evaluator).
 
 mod base_level;
+mod basis;
 pub mod edits;
 pub mod error;
 pub mod eval;

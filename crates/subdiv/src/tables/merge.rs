@@ -48,7 +48,11 @@ impl Tables {
         MeshRanges {
             cage_points: 0..self.cage_point_count,
             rows: self.levels.iter().map(|level| level.dispatches.clone()).collect(),
-            patches: self.patch_ranges.clone(),
+            patches: if self.basis.patches.is_empty() {
+                self.patch_ranges.clone()
+            } else {
+                vec![0..self.basis.patches.len() as u32, 0..0]
+            },
             irregular: self.irregular_ranges.clone(),
             ptex_faces: 0..self.ptex_faces.len() as u32,
             slots: 0..self.slots.rings.count(),

@@ -24,6 +24,7 @@ use crate::patch::{FillingQuad, PatchInfo, RegularPatch};
 use crate::refine::Refinement;
 use crate::stencil::{SharedWeights, StencilTable, has_large_faces};
 
+pub use crate::basis::MAX_TABLE_LEVEL;
 pub use crate::selection::PatchCounts;
 pub use basis::{BasisEdge, BasisPatch, BasisTable, TABLE_TRIANGLE};
 pub use face_varying::{FaceVaryingEvaluator, FaceVaryingPatch, FaceVaryingTable, TexTree};
@@ -94,9 +95,9 @@ pub struct Tables {
     /// Edits of points of all levels, level by level.
     pub edits: Vec<PointEdit>,
     /// For each of them the hierarchical edits that it combines: numbers of the mesh's edits, in their order.
-    edit_sources: Vec<Vec<u32>>,
+    pub(crate) edit_sources: Vec<Vec<u32>>,
     /// How many hierarchical edits the mesh has, or the meshes have.
-    hierarchical_edit_count: u32,
+    pub(crate) hierarchical_edit_count: u32,
 }
 
 impl Tables {
