@@ -55,7 +55,8 @@ void main()
         FaceDensity density = face_density(push.scene, object, face.ptex_face);
         vec4 factors = table_factors(density, face.flags, face.corner_uvs, push.scene.v.table_level);
         segments = table_segments(largest_factor(factors));
-        uint triangles = (is_table_triangle(face.flags) ? 1u : 2u) * segments * segments;
+        // Of a triangle too: half of them have no area.
+        uint triangles = 2u * segments * segments;
         entry = DrawEntry(item.place, item.object, segments, triangles, factors, vec4(0.0), vec2(0.0));
         if (is_culled(frame) && (object.flags & OBJECT_IN_HULL) != 0u) {
             is_seen = !is_table_patch_outside(object, face, frame.view);

@@ -164,7 +164,7 @@ impl Builder<'_> {
     fn add_patch(&mut self, face: u32, ptex_face: u32, uvs: [[u32; 2]; 4]) {
         let poly = self.poly;
         let sides = poly.sides(face);
-        let faces = poly.ring(&[face], self.rules.width());
+        let faces = poly.ring(&[face], poly.width(self.rules));
         // Of the turns of a face that one whose word is the least stands for all.
         let turns = poly.half_edges(face).map(|h| walk(poly, h, &faces, &[]));
         let (turn, walk) = (0..).zip(turns).min_by(|(_, a), (_, b)| a.word.cmp(&b.word)).expect("a face has edges");
@@ -223,7 +223,7 @@ impl Builder<'_> {
         let poly = self.poly;
         let h = poly.half_of_edge[edge as usize];
         let faces = poly.faces_at([poly.origin(h), poly.head(h)]);
-        let faces = poly.ring(&faces, self.rules.width() - 1);
+        let faces = poly.ring(&faces, poly.width(self.rules) - 1);
         let mut chosen = (walk(poly, h, &faces, &[]), true);
         if poly.twin(h) < CUT {
             let back = walk(poly, poly.twin(h), &faces, &[]);
@@ -248,7 +248,7 @@ impl Builder<'_> {
             return (self.limit_of[vertex as usize], is_smooth);
         }
         let whole = Sector { count: 1, first: fan.spokes[0], faces: fan.spokes.len(), is_closed: fan.is_closed };
-        let piece = around(poly, &fan, &whole, self.rules.width());
+        let piece = around(poly, &fan, &whole, poly.width(self.rules));
         let mask = self.masks.of(self.rules, &piece, self.creasing);
         let weights = (0..piece.vertices.len()).map(|i| [mask.position[i], mask.tangents[0][i], mask.tangents[1][i]]);
         let weights: Vec<[f32; 3]> = weights.map(|w| w.map(|weight| weight as f32)).collect();

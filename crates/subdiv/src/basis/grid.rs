@@ -91,7 +91,7 @@ impl Piece<'_> {
             .filter(|vertex| is_asked(vertex))
             .collect();
         let mut kept = step.child.faces_at(asked);
-        kept = step.child.ring(&kept, self.rules.width() - 1);
+        kept = step.child.ring(&kept, self.poly.width(self.rules) - 1);
         // What lies too far out is not known, and not needed.
         kept.retain(|&face| step.child.vertices(face).iter().all(|&vertex| step.rows[vertex as usize].is_some()));
         let (poly, vertices) = step.child.piece(&kept);
@@ -189,7 +189,7 @@ impl Piece<'_> {
             .position(|&spoke| self.central.binary_search(&poly.face[spoke as usize]).is_ok())
             .unwrap_or(0);
         let own = Sector::new(poly, &fan, face);
-        let piece = around(poly, &fan, &own, self.rules.width());
+        let piece = around(poly, &fan, &own, poly.width(self.rules));
         let mask = masks.of(self.rules, &piece, poly.creasing);
         let tangents = self.weighed(&piece, &mask.tangents[0]).into_iter().zip(self.weighed(&piece, &mask.tangents[1]));
         let tangents: Vec<[f64; 2]> = tangents.map(|(a, b)| [a, b]).collect();
@@ -197,7 +197,7 @@ impl Piece<'_> {
             return (self.weighed(&piece, &mask.position), tangents);
         }
         let whole = Sector { count: 1, first: fan.spokes[0], faces: fan.spokes.len(), is_closed: fan.is_closed };
-        let piece = around(poly, &fan, &whole, self.rules.width());
+        let piece = around(poly, &fan, &whole, poly.width(self.rules));
         (self.weighed(&piece, &masks.of(self.rules, &piece, poly.creasing).position), tangents)
     }
 

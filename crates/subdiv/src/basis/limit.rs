@@ -122,7 +122,7 @@ fn limit_mask(rules: &dyn Rules, mut poly: Poly) -> LimitMask {
     let vertex_count = poly.vertex_sharpness.len();
     // The points of the piece as weights of those that it began with.
     let mut values: Matrix = (0..vertex_count).map(|i| unit(vertex_count, i)).collect();
-    let mut word = around_first(&poly, rules.width()).word;
+    let mut word = around_first(&poly, poly.width(rules)).word;
     for step in 0.. {
         let (walked, rows) = next_around(&poly, rules);
         let is_the_same = walked.word == word && rows.len() == values.len();
@@ -150,7 +150,7 @@ fn around_first(poly: &Poly, width: u32) -> Walk {
 fn next_around(poly: &Poly, rules: &dyn Rules) -> (Walk, Vec<Vec<(u32, f64)>>) {
     let step = Step::new(poly, rules);
     // The child at corner 0 of face 0 is the first one.
-    let walked = around_first(&step.child, rules.width());
+    let walked = around_first(&step.child, poly.width(rules));
     let rows = walked.vertices.iter().map(|&vertex| step.rows[vertex as usize].clone().unwrap_or_default());
     let rows = rows.collect();
     (walked, rows)

@@ -2,6 +2,7 @@
 
 use crate::mesh::{Creasing, INFINITE_SHARPNESS};
 use crate::rules::{SemiSharpEdges, child_edge_sharpness, less_sharp};
+use crate::scheme::Rules;
 use crate::topology::Level;
 
 /// Nothing lies across an edge.
@@ -333,6 +334,11 @@ impl Poly {
         faces.sort_unstable();
         faces.dedup();
         faces
+    }
+
+    /// Rings of faces that the limit surface of a face depends on. By Chaikin's rule sharpness does so too, of edges one ring further.
+    pub fn width(&self, rules: &dyn Rules) -> u32 {
+        rules.width() + u32::from(self.creasing == Creasing::Chaikin)
     }
 
     /// Some faces and those around them, `width` times.
