@@ -53,7 +53,7 @@ void main()
         FrameInput frame = push.scene.v.frame_input.v;
         TablePatch face = push.scene.v.table_patches.v[item.place];
         FaceDensity density = face_density(push.scene, object, face.ptex_face);
-        vec4 factors = table_factors(density, face.flags, face.corner_uvs, push.scene.v.table_level);
+        vec4 factors = table_factors(density, face.flags, face.corner_uvs, push.scene.v.table_steps, push.scene.v.table_level);
         segments = table_segments(largest_factor(factors));
         // Of a triangle too: half of them have no area.
         uint triangles = 2u * segments * segments;
@@ -68,6 +68,6 @@ void main()
     append_entries(DRAW_TABLE, is_seen, entry, (segments + 1u) * (segments + 1u));
     barrier();
     if (gl_LocalInvocationID.x == 0u && patch_count != 0u) {
-        atomicAdd(push.scene.v.counts.v.table[1], patch_count);
+        atomicAdd(push.scene.v.counts.v.table[push.scene.v.table_steps], patch_count);
     }
 }

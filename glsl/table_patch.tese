@@ -1,9 +1,9 @@
 #version 460
 // variants: lean=LEAN layers=LAYERS colors=LAYERS,COLORS shading=SHADING dump=DUMP
 // Faces that are evaluated by table (Hollaender and Boubekeur 2010): each point of the grid is a row. Points of edges and corners are
-// those of the edge and of the vertex, whichever face asks.
+// those of the edge and of the vertex, whichever face asks. Substitutes that the paper compares with have the same grid.
 #extension GL_GOOGLE_include_directive : require
-#include "shared/table_rows.glsl"
+#include "shared/substitutes.glsl"
 #include "shared/table_factors.glsl"
 #include "shared/tex_tree.glsl"
 #include "shared/colors.glsl"
@@ -70,29 +70,69 @@ uint patch_row(uvec2 at, uint most, bool is_triangle)
 
 TableRange patch_range(TablePatch face) { return TableRange(face.first_control, face.control_count, face.first_weight); }
 
+Corners corners_of(SceneTables scene, TablePatch face)
+{
+    Corners result;
+    [[unroll]] for (uint i = 0u; i < 4u; ++i) {
+        uint point = scene.v.table_controls.v[face.first_control + min(i, face.control_count - 1u)];
+        result.position[i] = scene.v.points.v[point];
+        result.normal[i] = scene.v.table_normals.v[point];
+    }
+    return result;
+}
+
+// A point of the table's finest grid.
+TablePoint patch_point(SceneTables scene, TablePatch face, uvec2 at, uint most)
+{
+    bool is_triangle = is_table_triangle(face.flags);
+    if (EVALUATE != EVALUATE_TABLE) {
+        return substitute_point(corners_of(scene, face), corner_weights(vec2(at) / float(most), is_triangle));
+    }
+    return table_row(scene, patch_range(face), patch_row(at, most, is_triangle));
+}
+
+// Normals of the mesh that was split, between the corners.
+vec3 interpolated_normal(SceneTables scene, TablePatch face, uvec2 at, uint most)
+{
+    bool is_triangle = is_table_triangle(face.flags);
+    vec3 normal[4];
+    [[unroll]] for (uint i = 0u; i < 4u; ++i) {
+        normal[i] = scene.v.limits.v[face.corners[i]].normal;
+    }
+    if (is_triangle) {
+        normal[3] = vec3(0.0);
+    }
+    return unit_vector(mixed(normal, corner_weights(vec2(at) / float(most), is_triangle)));
+}
+
 // A point of an edge's table, or the limit point at its end. Where the surface is not smooth the normal is the face's own.
 TablePoint edge_row(SceneTables scene, TablePatch face, GridPlace place, uint along, uint most)
 {
     bool is_triangle = is_table_triangle(face.flags);
     uint stride = most / place.segments;
     TablePoint result;
+    if (EVALUATE != EVALUATE_TABLE) {
+        return patch_point(scene, face, edge_grid(place.edge, along * stride, most, is_triangle), most);
+    }
     bool is_corner = along == 0u || along == place.segments;
     uint end = place.edge + (along == 0u ? 0u : 1u);
     end = end == (is_triangle ? 3u : 4u) ? 0u : end;
-    bool has_own = (face.flags >> (is_corner ? 4u + end : place.edge) & 1u) != 0u;
+    bool has_own = NORMALS == NORMALS_TANGENTS && (face.flags >> (is_corner ? 4u + end : place.edge) & 1u) != 0u;
     for (bool is_open = is_corner; is_open; is_open = false) {
-        LimitPoint limit = scene.v.limits.v[face.corners[end]];
+        LimitPoint limit = scene.v.limits.v[face.corners[end & 3u]];
         result = TablePoint(limit.position, limit.normal);
     }
     for (bool is_open = !is_corner; is_open; is_open = false) {
-        uint edge = face.edges[place.edge];
+        uint edge = face.edges[place.edge & 3u];
         TableEdge table = scene.v.table_edges.v[edge >> 1];
         uint from_first = (edge & 1u) != 0u ? place.segments - along : along;
         result = table_row(scene, TableRange(table.first_control, table.control_count, table.first_weight), from_first * stride);
     }
     for (bool is_open = has_own; is_open; is_open = false) {
-        uvec2 at = edge_grid(place.edge, along * stride, most, is_triangle);
-        result.normal = table_row(scene, patch_range(face), patch_row(at, most, is_triangle)).normal;
+        result.normal = patch_point(scene, face, edge_grid(place.edge, along * stride, most, is_triangle), most).normal;
+    }
+    if (NORMALS == NORMALS_GEOMETRIC) {
+        result.normal = interpolated_normal(scene, face, edge_grid(place.edge, along * stride, most, is_triangle), most);
     }
     return result;
 }
@@ -113,23 +153,23 @@ TablePoint inner_point(SceneTables scene, TablePatch face, GridPlace place, uint
 {
     bool is_triangle = is_table_triangle(face.flags);
     uint stride = most / place.segments;
-    TableRange range = patch_range(face);
-    TablePoint own = table_row(scene, range, patch_row(place.at * stride, most, is_triangle));
+    TablePoint own = patch_point(scene, face, place.at * stride, most);
     float morph = table_morph(largest_factor(edge_factors), place.segments);
     uvec2 odd = place.at & 1u;
     for (bool is_open = odd != uvec2(0u) && morph < 1.0; is_open; is_open = false) {
         // In the middle of a coarser edge; of a coarser quad, too.
         ivec2 way = is_triangle && odd == uvec2(1u) ? ivec2(1, -1) : ivec2(odd);
-        TablePoint middle = table_middle(
-            table_row(scene, range, patch_row(uvec2(ivec2(place.at) - way) * stride, most, is_triangle)),
-            table_row(scene, range, patch_row(uvec2(ivec2(place.at) + way) * stride, most, is_triangle)));
+        TablePoint middle = table_middle(patch_point(scene, face, uvec2(ivec2(place.at) - way) * stride, most),
+                                         patch_point(scene, face, uvec2(ivec2(place.at) + way) * stride, most));
         if (!is_triangle && odd == uvec2(1u)) {
             way = ivec2(1, -1);
-            middle = table_middle(middle, table_middle(
-                table_row(scene, range, patch_row(uvec2(ivec2(place.at) - way) * stride, most, is_triangle)),
-                table_row(scene, range, patch_row(uvec2(ivec2(place.at) + way) * stride, most, is_triangle))));
+            middle = table_middle(middle, table_middle(patch_point(scene, face, uvec2(ivec2(place.at) - way) * stride, most),
+                                                       patch_point(scene, face, uvec2(ivec2(place.at) + way) * stride, most)));
         }
         own = table_between(middle, own, morph);
+    }
+    if (EVALUATE == EVALUATE_TABLE && NORMALS == NORMALS_GEOMETRIC) {
+        own.normal = interpolated_normal(scene, face, place.at * stride, most);
     }
     return own;
 }
@@ -141,12 +181,12 @@ vec3 next_point(SceneTables scene, TablePatch face, uvec2 at, uint most)
 }
 
 // Parameters on the Ptex face.
-vec2 table_uv(TablePatch face, vec2 uv)
+vec2 table_uv(TablePatch face, vec2 uv, uint steps)
 {
     bool is_triangle = is_table_triangle(face.flags);
-    vec2 origin = table_corner_uv(face.corner_uvs, 0u);
-    vec2 along_u = table_corner_uv(face.corner_uvs, 1u) - origin;
-    vec2 along_v = table_corner_uv(face.corner_uvs, is_triangle ? 2u : 3u) - origin;
+    vec2 origin = table_corner_uv(face.corner_uvs, 0u, steps);
+    vec2 along_u = table_corner_uv(face.corner_uvs, 1u, steps) - origin;
+    vec2 along_v = table_corner_uv(face.corner_uvs, is_triangle ? 2u : 3u, steps) - origin;
     return origin + uv.x * along_u + uv.y * along_v;
 }
 
@@ -170,9 +210,9 @@ void main()
     }
     vec3 position = without_sign_of_zero(to_world(object, point.position));
     vec3 normal = without_sign_of_zero(normal_to_world(object, point.normal));
-    vec2 uv = table_uv(face, vec2(at) / float(most));
-    // The parameters are those of the whole Ptex face; the level is 1.
-    PatchInfo info = PatchInfo(object.first_face + face.ptex_face, 0u, 1u << 5);
+    vec2 uv = table_uv(face, vec2(at) / float(most), scene.v.table_steps);
+    // The parameters are those of the whole Ptex face.
+    PatchInfo info = PatchInfo(object.first_face + face.ptex_face, 0u, scene.v.table_steps << 5);
     vec2 st = vec2(0.0);
 #if defined(SHADING) || defined(DUMP) || defined(COLORS)
     if (TEX_COORDS) {
@@ -190,7 +230,7 @@ void main()
 #endif
     if (MOVING) {
         vec3 next = position;
-        for (bool is_open = (object.flags & OBJECT_DEFORMS) != 0u; is_open; is_open = false) {
+        for (bool is_open = EVALUATE == EVALUATE_TABLE && (object.flags & OBJECT_DEFORMS) != 0u; is_open; is_open = false) {
             next = next_point(scene, face, at, most);
         }
         put_next_position(moved_on(object, next));

@@ -190,7 +190,8 @@ struct SceneData {
     GregoryStencils stencils;   // of Gregory patches
     RingPoints stencil_points;
     Weights stencil_weights;
-    TablePatches table_patches; // of the method `table`; these five are empty for others
+    TablePatches table_patches; // of the method `table` and its rivals; these six are empty for others
+    Points table_normals;       // of the points of all levels, where surfaces are shaded by them
     TableEdges table_edges;
     Indices table_controls;
     Weights table_weights;
@@ -240,6 +241,7 @@ struct SceneData {
     uint mark_group_count;
     uint first_limit_mark;
     uint table_level;        // 2^this segments a side of a table's patches
+    uint table_steps;        // and they are faces of the cage split so often
     uvec2 materials;         // address of the MaterialTables (materials.glsl), for holes in them; 0 where nothing has any
 };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer SceneTables { SceneData v; };

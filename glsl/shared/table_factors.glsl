@@ -6,15 +6,13 @@
 #define PLANISH_TABLE_FACTORS
 #include "density.glsl"
 
-// Every face is of level 1: what an edge of the cage is asked to have is had by two.
-const float TABLE_SCALE = 0.5;
-
 bool is_table_triangle(uint flags) { return (flags & TABLE_TRIANGLE) != 0u; }
 
 // Parameters of a corner on its Ptex face.
-vec2 table_corner_uv(uint corner_uvs, uint corner)
+vec2 table_corner_uv(uint corner_uvs, uint corner, uint steps)
 {
-    return 0.5 * vec2(bitfieldExtract(corner_uvs, int(4u * corner), 2), bitfieldExtract(corner_uvs, int(4u * corner + 2u), 2));
+    uint first = 6u * corner;
+    return halvings(steps) * vec2(bitfieldExtract(corner_uvs, int(first), 3), bitfieldExtract(corner_uvs, int(first + 3u), 3));
 }
 
 // Density at a corner. A triangle's are linear between those of the cage's vertices; at its corners and at the middles of its edges
@@ -27,18 +25,19 @@ float table_density(FaceDensity face, bool is_triangle, vec2 uv)
 }
 
 // Factor of each edge, from 1 to the segments of the table.
-vec4 table_factors(FaceDensity face, uint flags, uint corner_uvs, uint level)
+vec4 table_factors(FaceDensity face, uint flags, uint corner_uvs, uint steps, uint level)
 {
     bool is_triangle = is_table_triangle(flags);
     float most = float(1u << level);
     uint sides = is_triangle ? 3u : 4u;
     vec4 d;
     [[dont_unroll]] for (uint corner = 0u; corner < 4u; ++corner) {
-        d[corner] = table_density(face, is_triangle, table_corner_uv(corner_uvs, min(corner, sides - 1u)));
+        d[corner] = table_density(face, is_triangle, table_corner_uv(corner_uvs, min(corner, sides - 1u), steps));
     }
     vec4 result = vec4(1.0);
     [[dont_unroll]] for (uint edge = 0u; edge < sides; ++edge) {
-        precise float factor = (0.5 * (d[edge] + d[edge + 1u == sides ? 0u : edge + 1u])) * TABLE_SCALE;
+        // What an edge of the cage is asked to have is had by all that it was split into.
+        precise float factor = (0.5 * (d[edge] + d[edge + 1u == sides ? 0u : edge + 1u])) * halvings(steps);
         result[edge] = clamp(factor, 1.0, most);
     }
     return result;

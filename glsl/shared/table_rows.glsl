@@ -4,7 +4,13 @@
 #define PLANISH_TABLE_ROWS
 #include "frame.glsl"
 
-// A point in the mesh's own space, and its unit normal; or 0 where no tangents are asked for.
+// Where normals come from.
+const uint NORMALS_TANGENTS = 0;   // tangents of the limit surface, by a table of their own
+const uint NORMALS_SUBDIVISION = 1; // Subdivision Shading (Alexa and Boubekeur 2008): normals weighed as positions are
+const uint NORMALS_GEOMETRIC = 2;  // interpolated between those of the mesh that was split
+layout(constant_id = 15) const uint NORMALS = NORMALS_TANGENTS;
+
+// A point in the mesh's own space, and its unit normal.
 struct TablePoint {
     vec3 position;
     vec3 normal;
@@ -24,15 +30,21 @@ TablePoint table_row(SceneTables scene, TableRange range, uint row)
     precise vec3 along_u = vec3(0.0);
     precise vec3 along_v = vec3(0.0);
     uint first = range.first_weight + row * range.control_count;
-    for (uint i = 1u; i < range.control_count; ++i) {
-        precise vec3 offset = scene.v.points.v[scene.v.table_controls.v[range.first_control + i]] - origin;
-        vec2 slope = scene.v.table_tangents.v[first + i];
-        position = position + scene.v.table_weights.v[first + i] * offset;
-        along_u = along_u + slope.x * offset;
-        along_v = along_v + slope.y * offset;
+    for (uint i = NORMALS == NORMALS_SUBDIVISION ? 0u : 1u; i < range.control_count; ++i) {
+        uint control = scene.v.table_controls.v[range.first_control + i];
+        precise vec3 offset = scene.v.points.v[control] - origin;
+        float weight = scene.v.table_weights.v[first + i];
+        position = position + weight * offset;
+        if (NORMALS == NORMALS_TANGENTS) {
+            vec2 slope = scene.v.table_tangents.v[first + i];
+            along_u = along_u + slope.x * offset;
+            along_v = along_v + slope.y * offset;
+        } else if (NORMALS == NORMALS_SUBDIVISION) {
+            along_u = along_u + weight * scene.v.table_normals.v[control];
+        }
     }
     position = origin + position;
-    return TablePoint(position, unit_normal(along_u, along_v));
+    return TablePoint(position, NORMALS == NORMALS_TANGENTS ? unit_normal(along_u, along_v) : unit_vector(along_u));
 }
 
 // The same at the next moment, the position alone.

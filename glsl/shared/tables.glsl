@@ -137,8 +137,9 @@ struct FillingQuad {
     PatchInfo info;
 };
 
-// A face of the cage after one step of subdivision, whose points are rows of a table (Hollaender and Boubekeur 2010): of a grid of
-// points, `control_count` weights each, of these controls. Tangents lie as the weights do.
+// A face of the cage after one or two steps of subdivision, whose points are rows of a table (Hollaender and Boubekeur 2010): of a
+// grid of points, `control_count` weights each, of these controls. Tangents lie as the weights do. Or a face of the cage itself, of a
+// substitute, whose controls are its corners.
 struct TablePatch {
     uint corners[4];    // limit points; of a triangle the last is the first
     uint edges[4];      // edge << 1 | it runs the other way; the first from corner 0 to 1
@@ -146,7 +147,7 @@ struct TablePatch {
     uint control_count;
     uint first_weight;
     uint ptex_face;
-    uint corner_uvs;    // parameters of the corners on the Ptex face, in halves: 2 bits for u and 2 for v each
+    uint corner_uvs;    // parameters of the corners on the Ptex face, in 2^-steps: 3 bits for u and 3 for v each
     uint flags;         // bits 0-3 edges, 4-7 corners, whose normal is the patch's own; TABLE_TRIANGLE
 };
 const uint TABLE_TRIANGLE = 256;

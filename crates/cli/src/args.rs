@@ -17,7 +17,7 @@ use crate::aov::AovList;
 use crate::frames::FrameRange;
 use crate::names::{
     CreasePatchesName, DisplacementKindName, DisplacementLayoutName, EndCapName, FilterName, GregoryNormalsName,
-    GregoryPointsName, LodName, MethodName, MetricName, SchemeName, SpacingName, ViewName, name_of,
+    GregoryPointsName, LodName, MethodName, MetricName, SchemeName, SpacingName, TableNormalsName, ViewName, name_of,
 };
 use crate::values::{self, FrameRate, MAX_LEVEL};
 
@@ -323,6 +323,9 @@ pub struct SurfaceArguments {
     /// Normals of Gregory patches: of their Bezier form, exact along edges, or of the rational patch
     #[arg(long, value_enum, default_value_t = GregoryNormalsName::Approximate)]
     pub gregory_normals: GregoryNormalsName,
+    /// Where normals of method table come from
+    #[arg(long, value_enum, default_value_t = TableNormalsName::Tangent)]
+    pub table_normals: TableNormalsName,
     /// Trade bitwise equal seams for speed
     #[arg(long)]
     pub no_watertight: bool,
@@ -339,6 +342,9 @@ impl SurfaceArguments {
             MethodName::Pm => SurfaceMethod::Pm,
             MethodName::Uniform => SurfaceMethod::Uniform,
             MethodName::Table => SurfaceMethod::Table,
+            MethodName::Flat => SurfaceMethod::Flat,
+            MethodName::Phong => SurfaceMethod::Phong,
+            MethodName::Pn => SurfaceMethod::Pn,
         }
     }
 

@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::{Result, anyhow};
 use glam::Vec3;
 use planish_film::{DumpProperties, DumpVertex, check_dump_output, write_ply_stream};
-use planish_render::{CapturedVertex, Density, DumpPasses, SurfaceMethod};
+use planish_render::{CapturedVertex, Density, DumpPasses};
 use planish_scene::Camera;
 
 use crate::args::DumpArguments;
@@ -130,7 +130,7 @@ impl Dump<'_> {
 
     /// What a part of a capture has to show: all of it, but for the triangles that lie folded on a side of a patch's grid.
     fn kept<'v>(&self, vertices: &'v [CapturedVertex]) -> Cow<'v, [CapturedVertex]> {
-        if self.session.surface.desc().method != SurfaceMethod::Table {
+        if !self.session.surface.desc().method.is_grid() {
             return Cow::Borrowed(vertices);
         }
         vertices.chunks_exact(3).filter(|triangle| has_three_corners(triangle)).flatten().copied().collect()
@@ -138,7 +138,7 @@ impl Dump<'_> {
 
     /// Vertices of the frame whose lists were made.
     fn vertex_count(&self) -> Result<u64> {
-        if self.session.surface.desc().method != SurfaceMethod::Table {
+        if !self.session.surface.desc().method.is_grid() {
             return Ok(3 * planish_render::listed_triangle_count(&self.session.device, &self.session.surface)?);
         }
         // How many are folded depends on the factors of edges: captured once more to count them.

@@ -50,12 +50,13 @@ fn surface_desc(arguments: &InfoArguments, cage: &Cage) -> Result<SurfaceDesc> {
             let desc = SurfaceDesc {
                 method,
                 // One patch a face of the cage: nothing is refined.
-                level: if method.is_one_patch_a_face() || method == SurfaceMethod::Table { 0 } else { level },
+                level: if method.is_one_patch_a_face() || method.is_grid() { 0 } else { level },
                 crease_patches,
                 end_cap: surface.end_cap.into(),
                 displaced: false,
                 gregory_points,
                 scheme: surface.scheme()?,
+                table_normals: surface.table_normals.into(),
             };
             check_gregory(cage, &desc)?;
             Ok(desc)
@@ -339,7 +340,7 @@ impl StencilInfo {
 /// Patches of each level where every irregularity is isolated to the last one.
 fn patch_counts(desc: &SurfaceDesc, made: &Preprocessed) -> Vec<PatchCounts> {
     let mut counts = vec![PatchCounts::default(); made.tables.last_level as usize + 1];
-    if desc.method == SurfaceMethod::Table {
+    if desc.method.is_grid() {
         counts[made.tables.last_level as usize].table = made.tables.basis.patches.len() as u32;
         return counts;
     }

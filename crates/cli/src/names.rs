@@ -1,7 +1,7 @@
 //! Names on the command line for what the renderer offers.
 
 use clap::ValueEnum;
-use planish_render::{EndCap, GregoryPoints, Spacing, View};
+use planish_render::{EndCap, GregoryPoints, Spacing, TableNormals, View};
 use planish_scene::displacement::{DisplacementKind, DisplacementLayout};
 use planish_subdiv::refine::CreasePatches;
 
@@ -19,6 +19,12 @@ pub enum MethodName {
     Pm,
     /// Basis function tables over the cage subdivided once: any scheme
     Table,
+    /// Faces of the cage as they are, to compare with: triangles and quads
+    Flat,
+    /// Phong tessellation, to compare with: triangles and quads
+    Phong,
+    /// Curved PN triangles, to compare with: triangles
+    Pn,
     Uniform,
 }
 
@@ -80,6 +86,33 @@ pub enum GregoryNormalsName {
     Approximate,
     /// Of the rational patch
     Exact,
+}
+
+/// Normals of surfaces by table, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TableNormalsName {
+    /// Tables of tangents: the limit surface's own
+    Tangent,
+    /// Subdivision Shading from the cage on
+    Subdivision0,
+    /// Subdivision Shading from the mesh after one step on
+    Subdivision1,
+    /// Subdivision Shading from the mesh after two steps on
+    Subdivision2,
+    /// Geometric normals of the mesh after one step, interpolated
+    Geometric,
+}
+
+impl From<TableNormalsName> for TableNormals {
+    fn from(name: TableNormalsName) -> Self {
+        match name {
+            TableNormalsName::Tangent => Self::Tangents,
+            TableNormalsName::Subdivision0 => Self::Subdivision(0),
+            TableNormalsName::Subdivision1 => Self::Subdivision(1),
+            TableNormalsName::Subdivision2 => Self::Subdivision(2),
+            TableNormalsName::Geometric => Self::Geometric,
+        }
+    }
 }
 
 /// How control points of Gregory patches are made, by name.

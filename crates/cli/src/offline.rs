@@ -8,7 +8,7 @@ use planish_gpu::{Calls, Device, Encoder, Recorded, SubmitReport};
 use planish_render::density::{MAX_UNCUT_DENSITY, isolation_level, largest_density};
 use planish_render::{
     Culling, Density, DrawOptions, DrawPasses, EndCap, FrameCamera, FrameNeeds, FrameOptions, FrameStages,
-    GregoryPoints, Layers, ObjectDesc, Selection, Spacing, Status, Surface, SurfaceDesc, SurfaceMethod, Targets, View,
+    GregoryPoints, Layers, ObjectDesc, Selection, Spacing, Status, Surface, SurfaceDesc, SurfaceMethod, TableNormals, Targets, View,
     preprocess,
 };
 use planish_scene::{Camera, Lens, Pose};
@@ -23,12 +23,14 @@ use crate::frames::FrameRange;
 use crate::moment::{Moment, deform_surface};
 use crate::names::{GregoryNormalsName, LodName};
 use crate::shading::FrameParts;
+use crate::stats::method_name;
 use crate::values::FrameRate;
 
 /// What a plan is made for.
 pub struct PlanSetting {
     pub method: SurfaceMethod,
     pub scheme: Scheme,
+    pub table_normals: TableNormals,
     /// No irregularity is isolated deeper.
     pub max_level: u32,
     pub crease_patches: CreasePatches,
@@ -102,6 +104,7 @@ impl Plan {
         Ok(PlanSetting {
             method,
             scheme: surface.scheme()?,
+            table_normals: surface.table_normals.into(),
             max_level: surface.max_level(),
             crease_patches: surface.crease_patches.into(),
             end_cap: surface.end_cap.into(),
@@ -139,8 +142,7 @@ impl Plan {
         let (camera, objects) = first.expect("a frame at least");
         let is_gregory = setting.method.is_one_patch_a_face();
         // Tables are over the cage subdivided once.
-        let is_table = setting.method == SurfaceMethod::Table;
-        let level = if is_gregory || is_table { 0 } else { isolation_level(density, setting.max_level) };
+        let level = if is_gregory || setting.method.is_grid() { 0 } else { isolation_level(density, setting.max_level) };
         // Stencils are over the cage: end caps lie deeper.
         let gregory_points =
             if setting.method == SurfaceMethod::Gregory { setting.gregory_points } else { GregoryPoints::TwoStage };
@@ -152,6 +154,7 @@ impl Plan {
             displaced: cage.is_displaced(),
             gregory_points,
             scheme: setting.scheme,
+            table_normals: setting.table_normals,
         };
         let needs = FrameNeeds {
             watertight: setting.watertight,
@@ -163,7 +166,8 @@ impl Plan {
             gregory_points,
             exact_normals: setting.exact_normals,
             colors: cage.has_colors(),
-            table: is_table,
+            grids: desc.method.is_grid(),
+            vertex_normals: desc.has_vertex_normals(),
             deforms: cage.deforms(),
             placed: is_placed,
             ..frame_needs(setting.spacing, density, &objects)
@@ -193,11 +197,8 @@ impl Plan {
 
 /// Refuses what tables do not have.
 pub fn check_table(cage: &Cage, plan: &Plan) -> Result<()> {
-    if plan.desc.method != SurfaceMethod::Table {
-        return Ok(());
-    }
-    if cage.is_displaced() {
-        bail!("method table draws the limit surface: expected no displacement map");
+    if plan.desc.method.is_grid() && cage.is_displaced() {
+        bail!("method {} is not displaced: expected no displacement map", method_name(plan.desc.method));
     }
     Ok(())
 }
@@ -219,7 +220,10 @@ pub fn check_gregory(cage: &Cage, desc: &SurfaceDesc) -> Result<()> {
 /// Refuses what motion is not known of.
 fn check_motion(cage: &Cage, plan: &Plan) -> Result<()> {
     if plan.needs.moves && cage.deforms() && plan.desc.has_gregory_patches() {
-        bail!("motion of meshes that deform is not known on Gregory patches: expected method dfas, fas or uniform");
+        bail!("motion of meshes that deform is not known on Gregory patches: expected method dfas, fas, table or uniform");
+    }
+    if plan.needs.moves && cage.deforms() && plan.desc.method.is_substitute() {
+        bail!("motion of meshes that deform is not known on substitutes: expected method dfas, fas, table or uniform");
     }
     if plan.needs.moves && cage.displaces_what_deforms() {
         bail!("motion of meshes that deform is that of the limit surface: expected no displacement map");

@@ -253,6 +253,9 @@ pub fn method_name(method: SurfaceMethod) -> &'static str {
         SurfaceMethod::Pm => "pm",
         SurfaceMethod::Uniform => "uniform",
         SurfaceMethod::Table => "table",
+        SurfaceMethod::Flat => "flat",
+        SurfaceMethod::Phong => "phong",
+        SurfaceMethod::Pn => "pn",
     }
 }
 

@@ -94,7 +94,7 @@ impl TableBuffers {
             stars: lists(device, "stars", &star_marks)?,
             density_scales: table(device, "density scales", density_scales)?,
             mark_groups: table(device, "mark groups", &marks.groups)?,
-            basis: BasisBuffers::new(device, &tables.basis)?,
+            basis: BasisBuffers::new(device, tables)?,
         })
     }
 
@@ -238,7 +238,7 @@ impl ListBuffers {
     ) -> Result<Self, Error> {
         let row_counts: Vec<u32> = phases.rows.iter().map(|&[_, count]| count).collect();
         let mut heads = capacities.heads(&row_counts);
-        if matches!(method, SurfaceMethod::Uniform | SurfaceMethod::Table) {
+        if method == SurfaceMethod::Uniform || method.is_grid() {
             // Every row is in use.
             for (head, &count) in heads[LIST_PHASES..].iter_mut().zip(&row_counts) {
                 let groups = planish_gpu::groups_for(count, crate::lists::CHUNK);

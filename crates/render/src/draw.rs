@@ -60,6 +60,7 @@ pub(crate) fn depth_options(surface: &SurfaceDesc, needs: &FrameNeeds) -> Pipeli
         colors: false,
         moves: false,
         cutouts: needs.cutouts,
+        table_normals: surface.table_normals,
     }
 }
 

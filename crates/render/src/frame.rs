@@ -15,7 +15,7 @@ use crate::select::Select;
 use crate::spokes::SpokeStage;
 use crate::subdivide::Subdivide;
 use crate::surface::Surface;
-use crate::table::EmitTable;
+use crate::table::{EmitTable, VertexNormals};
 use crate::upload::address;
 
 /// The stages of a frame that make what is drawn.
@@ -25,6 +25,7 @@ pub struct FrameStages {
     subdivide: Subdivide,
     limit: Limit,
     spokes: Option<SpokeStage>,
+    normals: Option<VertexNormals>,
     emit: EmitStage,
     needs: FrameNeeds,
 }
@@ -44,7 +45,8 @@ impl FrameStages {
             subdivide: Subdivide::new(device)?,
             limit: Limit::new(device, needs)?,
             spokes: needs.gregory.then(|| SpokeStage::new(device, needs.rival.is_some())).transpose()?,
-            emit: if needs.table {
+            normals: needs.vertex_normals.then(|| VertexNormals::new(device)).transpose()?,
+            emit: if needs.grids {
                 EmitStage::Table(EmitTable::new(device, needs)?)
             } else {
                 EmitStage::Patches(Emit::new(device, needs)?)
@@ -64,7 +66,8 @@ impl FrameStages {
         let (needs, desc) = (&self.needs, &surface.desc);
         assert_eq!(needs.gregory, desc.has_gregory_patches(), "stages and surface have Gregory patches");
         assert_eq!(needs.rival, desc.method.rival(), "stages and surface have patches of one scheme");
-        assert_eq!(needs.table, desc.method == SurfaceMethod::Table, "stages and surface have tables");
+        assert_eq!(needs.grids, desc.method.is_grid(), "stages and surface have grids");
+        assert_eq!(needs.vertex_normals, desc.has_vertex_normals(), "stages and surface have normals of vertices");
         assert!(!needs.gregory || needs.gregory_points == desc.gregory_points, "one way to make Gregory patches");
         keep(encoder, surface);
         encoder.timestamp("start");
@@ -73,7 +76,7 @@ impl FrameStages {
         encoder.timestamp("animate");
         match desc.method {
             SurfaceMethod::Uniform => {}
-            SurfaceMethod::Table => self.select.record_densities(encoder, surface),
+            method if method.is_grid() => self.select.record_densities(encoder, surface),
             _ => self.select.record(encoder, surface),
         }
         self.subdivide.record(encoder, surface, &surface.frame.points);
@@ -83,6 +86,9 @@ impl FrameStages {
         self.limit.record(encoder, surface, &surface.frame.points, &surface.frame.limits);
         if let Some(spokes) = &self.spokes {
             spokes.record(encoder, surface);
+        }
+        if let Some(normals) = &self.normals {
+            normals.record(encoder, surface);
         }
         encoder.timestamp("limit");
         match &self.emit {

@@ -68,7 +68,7 @@ impl PatchKind {
             }
             SurfaceMethod::Acc | SurfaceMethod::Pm => &[Self::Regular, Self::Cut, Self::Gregory, Self::GregoryCut],
             SurfaceMethod::Uniform => &[Self::Filling],
-            SurfaceMethod::Table => &[Self::Table],
+            SurfaceMethod::Table | SurfaceMethod::Flat | SurfaceMethod::Phong | SurfaceMethod::Pn => &[Self::Table],
         }
     }
 }

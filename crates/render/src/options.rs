@@ -22,6 +22,12 @@ pub enum SurfaceMethod {
     Uniform,
     /// Basis function tables over the cage subdivided once (Hollaender and Boubekeur 2010): any scheme.
     Table,
+    /// Faces of the cage as they are, shaded smoothly: what substitutes are measured by.
+    Flat,
+    /// Phong tessellation (Boubekeur and Alexa 2008): a substitute to compare with.
+    Phong,
+    /// Curved PN triangles (Vlachos et al. 2001): a substitute to compare with.
+    Pn,
 }
 
 impl SurfaceMethod {
@@ -30,14 +36,37 @@ impl SurfaceMethod {
         matches!(self, Self::Gregory | Self::Acc | Self::Pm)
     }
 
+    /// Whether faces are grids of points that the tessellator makes one vertex of each: by table, or by a substitute.
+    pub fn is_grid(self) -> bool {
+        matches!(self, Self::Table | Self::Flat | Self::Phong | Self::Pn)
+    }
+
+    /// Whether it is over the faces of the cage itself, by their corners alone.
+    pub fn is_substitute(self) -> bool {
+        self.is_grid() && self != Self::Table
+    }
+
     /// The scheme of these patches, if they are no Gregory patches.
     pub fn rival(self) -> Option<Rival> {
         match self {
             Self::Acc => Some(Rival::Acc),
             Self::Pm => Some(Rival::Pm),
-            Self::Dfas | Self::Fas | Self::Gregory | Self::Uniform | Self::Table => None,
+            _ => None,
         }
     }
+}
+
+/// Where normals of surfaces by table come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TableNormals {
+    /// Tables of tangents: the limit surface's own.
+    #[default]
+    Tangents,
+    /// Subdivision Shading (Alexa and Boubekeur 2008): geometric normals of the mesh after so many steps, 2 at most, are subdivided as
+    /// positions are.
+    Subdivision(u32),
+    /// Geometric normals of the mesh after one step, interpolated.
+    Geometric,
 }
 
 /// How the control points of Gregory patches are made.
@@ -156,8 +185,10 @@ pub struct FrameNeeds {
     pub moves: bool,
     /// Some materials have holes: what is shaded later, and shadows.
     pub cutouts: bool,
-    /// Faces are evaluated by table ([`SurfaceMethod::Table`]).
-    pub table: bool,
+    /// Faces are grids ([`SurfaceMethod::is_grid`]).
+    pub grids: bool,
+    /// Normals are made of those of vertices.
+    pub vertex_normals: bool,
 }
 
 impl FrameNeeds {
@@ -180,7 +211,8 @@ impl FrameNeeds {
             deforms: false,
             moves: false,
             cutouts: false,
-            table: false,
+            grids: false,
+            vertex_normals: false,
         }
     }
 }

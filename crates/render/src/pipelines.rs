@@ -9,7 +9,7 @@ use planish_subdiv::gregory::Rival;
 
 use crate::error::Error;
 use crate::lists::PatchKind;
-use crate::options::{EndCap, Spacing, SurfaceMethod, View};
+use crate::options::{EndCap, Spacing, SurfaceMethod, TableNormals, View};
 use crate::program::stage;
 use crate::targets::{DEPTH_FORMAT, Layers};
 
@@ -72,6 +72,8 @@ pub(crate) struct PipelineOptions {
     pub moves: bool,
     /// Some materials have holes.
     pub cutouts: bool,
+    /// Where normals by table come from.
+    pub table_normals: TableNormals,
 }
 
 /// The pipeline of each kind of patch that the method has: each on a thread of its own, as drivers compile on the caller's.
@@ -115,6 +117,8 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
         SpecConstant { id: shaders::gregory_patch_tesc::SPEC_STENCIL, bits: u32::from(options.stencils) },
         SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_COLORED, bits: u32::from(options.colors) },
         SpecConstant { id: shaders::bspline_patch_colors_tese::SPEC_MOVING, bits: u32::from(options.moves) },
+        SpecConstant { id: shaders::table_patch_lean_tese::SPEC_EVALUATE, bits: evaluation(options.method) },
+        SpecConstant { id: shaders::table_patch_lean_tese::SPEC_NORMALS, bits: table_normals(options.table_normals) },
     ];
     let fragment = fragment_stage(options);
     let fragment_constants = [
@@ -171,6 +175,25 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
             rasterizer_discard: is_dump,
         },
     )?)
+}
+
+/// EVALUATE_.. of `glsl/shared/substitutes.glsl`.
+fn evaluation(method: SurfaceMethod) -> u32 {
+    match method {
+        SurfaceMethod::Flat => 1,
+        SurfaceMethod::Phong => 2,
+        SurfaceMethod::Pn => 3,
+        _ => 0,
+    }
+}
+
+/// NORMALS_.. of `glsl/shared/table_rows.glsl`.
+fn table_normals(normals: TableNormals) -> u32 {
+    match normals {
+        TableNormals::Tangents => 0,
+        TableNormals::Subdivision(_) => 1,
+        TableNormals::Geometric => 2,
+    }
 }
 
 /// The stages before rasterization.
@@ -338,6 +361,9 @@ fn pass_name(options: &PipelineOptions, kind: PatchKind) -> &'static str {
         (_, PatchKind::GregoryCut) => "cut Gregory quads",
         (_, PatchKind::Triangle) => "Gregory triangles",
         (_, PatchKind::TriangleCut) => "cut Gregory triangles",
+        (SurfaceMethod::Flat, PatchKind::Table) => "flat faces",
+        (SurfaceMethod::Phong, PatchKind::Table) => "Phong tessellation",
+        (SurfaceMethod::Pn, PatchKind::Table) => "PN triangles",
         (_, PatchKind::Table) => "table patches",
     }
 }

@@ -10,7 +10,7 @@ use planish_subdiv::ControlMesh;
 use planish_subdiv::mesh::{HierarchicalEdit, VertexInterpolation};
 use planish_subdiv::refine::{CreasePatches, RefineOptions, Refinement};
 use planish_subdiv::scheme::Scheme;
-use planish_subdiv::tables::{MeshRanges, Tables, TexTree};
+use planish_subdiv::tables::{BasisOptions, MeshRanges, Tables, TexTree};
 
 use crate::buffers::{FrameBuffers, ListBuffers, TableBuffers};
 use crate::camera::FrameCamera;
@@ -23,7 +23,7 @@ use crate::lists::{Capacities, Phases, Status};
 use crate::marks::Marks;
 use crate::motion::MotionBuffers;
 use crate::objects::{CageFacts, MeshFacts, ObjectDesc};
-use crate::options::{Culling, EndCap, FrameOptions, GregoryPoints, SurfaceMethod};
+use crate::options::{Culling, EndCap, FrameOptions, GregoryPoints, SurfaceMethod, TableNormals};
 use crate::upload::address;
 
 /// What to make of cages.
@@ -43,6 +43,8 @@ pub struct SurfaceDesc {
     pub gregory_points: GregoryPoints,
     /// Subdivision scheme; all methods but [`SurfaceMethod::Table`] know Catmull-Clark alone.
     pub scheme: Scheme,
+    /// Where normals of surfaces by table come from.
+    pub table_normals: TableNormals,
 }
 
 impl SurfaceDesc {
@@ -50,6 +52,29 @@ impl SurfaceDesc {
     pub fn has_gregory_patches(&self) -> bool {
         let is_capped = self.end_cap == EndCap::Gregory && self.method != SurfaceMethod::Uniform;
         self.method.is_one_patch_a_face() || is_capped
+    }
+
+    /// Whether normals are made of those of vertices.
+    pub fn has_vertex_normals(&self) -> bool {
+        self.basis_options().is_some_and(|options| options.ring_level.is_some())
+    }
+
+    /// What is made of cages whose faces are grids.
+    pub fn basis_options(&self) -> Option<BasisOptions> {
+        let &Self { method, scheme, table_normals, .. } = self;
+        if method.is_substitute() {
+            // Faces as they are: Loop and Stam's are triangles and quads.
+            let scheme = if method == SurfaceMethod::Pn { Scheme::Loop } else { Scheme::LoopStam };
+            let level = SUBSTITUTE_LEVEL;
+            return Some(BasisOptions { scheme, steps: 0, level, ring_level: Some(0), has_weights: false });
+        }
+        let (steps, ring_level) = match table_normals {
+            TableNormals::Tangents => (1, None),
+            TableNormals::Geometric => (1, Some(1)),
+            TableNormals::Subdivision(start) => (start.clamp(1, 2), Some(start.min(2))),
+        };
+        let options = BasisOptions { scheme, steps, level: TABLE_LEVEL + 1 - steps, ring_level, has_weights: true };
+        (method == SurfaceMethod::Table).then_some(options)
     }
 
     /// Whether regular patches may have a semi-sharp crease.
@@ -91,8 +116,22 @@ pub struct Preprocessed {
     pub times: PreprocessTimes,
 }
 
-/// Level of tables: 32 segments a side of a face of level 1, 64 a side of the cage's.
+/// Level of tables after one step: 32 segments a side of a face, 64 a side of the cage's.
 const TABLE_LEVEL: u32 = 5;
+/// Level of grids of substitutes: as many segments a side of the cage's faces.
+const SUBSTITUTE_LEVEL: u32 = 6;
+
+/// Refuses faces that a substitute has no patch for.
+fn check_substitute(mesh: &ControlMesh, method: SurfaceMethod, scheme: Scheme) -> Result<(), Error> {
+    let found = (0..).zip(&mesh.face_sizes).find(|(_, sides)| method.is_substitute() && !scheme.accepts(**sides));
+    match found {
+        None => Ok(()),
+        Some((face, &sides)) => {
+            let method = if method == SurfaceMethod::Pn { "pn" } else { "flat and phong" };
+            Err(Error::SubstituteFace { method, face, sides, accepted: scheme.accepted() })
+        }
+    }
+}
 
 /// Refuses what schemes that are there to compare with have no part in.
 fn refuse_rival(desc: &SurfaceDesc, is_asked: bool, what: &'static str) -> Result<(), Error> {
@@ -134,8 +173,9 @@ pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preproc
             times.tables += milliseconds(start);
             continue;
         }
-        if desc.method == SurfaceMethod::Table {
-            parts.push(Tables::of_basis(mesh, desc.scheme, TABLE_LEVEL)?);
+        if let Some(options) = desc.basis_options() {
+            check_substitute(mesh, desc.method, options.scheme)?;
+            parts.push(Tables::of_basis(mesh, &options)?);
             times.tables += milliseconds(start);
             continue;
         }
@@ -408,6 +448,7 @@ impl Surface {
             stencils: address(&tables.stencil_faces),
             stencil_points: address(&tables.stencil_rings),
             stencil_weights: address(&tables.stencil_weights),
+            table_normals: address(&tables.basis.normals),
             table_patches: address(&tables.basis.patches),
             table_edges: address(&tables.basis.edges),
             table_controls: address(&tables.basis.controls),
@@ -458,8 +499,8 @@ impl Surface {
             mark_group_count: self.marks.groups.len() as u32,
             first_limit_mark: self.marks.first_limit,
             table_level: self.tables.basis.level,
+            table_steps: self.tables.basis.steps,
             materials: [self.materials as u32, (self.materials >> 32) as u32],
-            ..SceneData::default()
         };
         Ok(frame.scene.write(0, &[data])?)
     }

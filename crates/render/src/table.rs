@@ -3,16 +3,16 @@
 
 use planish_gpu::{Buffer, ComputePipeline, Device, Encoder, SpecConstant};
 use planish_shaders as shaders;
-use planish_shaders::EmitPush;
-use planish_subdiv::tables::{BasisEdge, BasisPatch, BasisTable};
+use planish_shaders::{EmitPush, TableNormalsPush};
+use planish_subdiv::tables::{BasisEdge, BasisPatch, BasisTable, Tables};
 
 use crate::error::Error;
 use crate::lists::{CHUNK, LIST_BASE};
-use crate::options::FrameNeeds;
+use crate::options::{FrameNeeds, TableNormals};
 use crate::program::{compute_pipeline, specialized_compute_pipeline};
 use crate::select::head_offset;
 use crate::surface::Surface;
-use crate::upload::{address, table};
+use crate::upload::{address, array, table};
 
 /// The tables.
 pub(crate) struct BasisBuffers {
@@ -21,11 +21,21 @@ pub(crate) struct BasisBuffers {
     pub controls: Buffer,
     pub weights: Buffer,
     pub tangents: Buffer,
+    pub rings: Buffer,
+    pub ring_indices: Buffer,
+    /// Of the points of all levels, which frames make.
+    pub normals: Buffer,
 }
 
 impl BasisBuffers {
-    pub fn new(device: &Device, basis: &BasisTable) -> Result<Self, Error> {
+    pub fn new(device: &Device, tables: &Tables) -> Result<Self, Error> {
+        let basis = &tables.basis;
+        let (rings, ring_indices) = rings(basis);
+        let normal_count = if basis.rings.is_empty() { 0 } else { tables.point_count() };
         Ok(Self {
+            rings: table(device, "rings of vertices", &rings)?,
+            ring_indices: table(device, "indices of rings", &ring_indices)?,
+            normals: array::<shaders::Points>(device, "normals of points", normal_count)?,
             patches: table(device, "table patches", &basis.patches.iter().map(patch).collect::<Vec<_>>())?,
             edges: table(device, "table edges", &basis.edges.iter().map(edge).collect::<Vec<_>>())?,
             controls: table(device, "table controls", &basis.controls)?,
@@ -34,9 +44,33 @@ impl BasisBuffers {
         })
     }
 
-    pub fn all(&self) -> [&Buffer; 5] {
-        [&self.patches, &self.edges, &self.controls, &self.weights, &self.tangents]
+    pub fn all(&self) -> [&Buffer; 8] {
+        [
+            &self.patches,
+            &self.edges,
+            &self.controls,
+            &self.weights,
+            &self.tangents,
+            &self.rings,
+            &self.ring_indices,
+            &self.normals,
+        ]
     }
+}
+
+/// OPEN_RING of `glsl/table_normals.comp`.
+const OPEN_RING: u32 = 1 << 31;
+
+fn rings(basis: &BasisTable) -> (Vec<shaders::StencilRow>, Vec<u32>) {
+    let mut indices = Vec::new();
+    let row = |(ring, is_closed): &(Vec<u32>, bool)| {
+        let first_index = indices.len() as u32;
+        indices.extend(ring);
+        let count = ring.len() as u32 | if *is_closed || ring.is_empty() { 0 } else { OPEN_RING };
+        shaders::StencilRow { first_index, first_weight: 0, count }
+    };
+    let rows = basis.rings.iter().map(row).collect();
+    (rows, indices)
 }
 
 fn patch(patch: &BasisPatch) -> shaders::TablePatch {
@@ -89,5 +123,66 @@ impl EmitTable {
         let push = shaders::finish_lists_comp::Push { heads: address(&surface.lists.draw_heads) };
         encoder.compute(&self.finish, &push, CHUNK);
         encoder.timestamp("emit");
+    }
+}
+
+/// The stage that makes normals of vertices (`glsl/table_normals.comp`).
+pub(crate) struct VertexNormals {
+    rings: ComputePipeline,
+    stencils: ComputePipeline,
+    limits: ComputePipeline,
+}
+
+impl VertexNormals {
+    pub fn new(device: &Device) -> Result<Self, Error> {
+        Ok(Self {
+            rings: compute_pipeline(device, &shaders::table_normals_rings_comp::PROGRAM)?,
+            stencils: compute_pipeline(device, &shaders::table_normals_stencils_comp::PROGRAM)?,
+            limits: compute_pipeline(device, &shaders::table_normals_limits_comp::PROGRAM)?,
+        })
+    }
+
+    /// Records the stage after limit points are made: a dispatch over the rings of a level, one for each level after it, and one over limit
+    /// points.
+    pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
+        let (tables, buffers, frame) = (&surface.tables, &surface.buffers, &surface.frame);
+        let basis = &buffers.basis;
+        let push = TableNormalsPush {
+            points: address(&frame.points),
+            normals: address(&basis.normals),
+            limits: address(&frame.limits),
+            rows: address(&basis.rings),
+            indices: address(&basis.ring_indices),
+            weights: address(&buffers.weights),
+            limit_weights: address(&buffers.limit_weights),
+            first_point: tables.levels[tables.basis.ring_level as usize].points.start,
+            count: tables.basis.rings.len() as u32,
+            ..TableNormalsPush::default()
+        };
+        encoder.compute(&self.rings, &push, push.count);
+        let is_first_alone = u32::from(surface.desc.table_normals == TableNormals::Geometric);
+        for level in &tables.levels[tables.basis.ring_level as usize + 1..] {
+            let rows = level.points.start - tables.cage_point_count;
+            let push = TableNormalsPush {
+                rows: address(&buffers.rows),
+                indices: address(&buffers.indices),
+                first_row: rows,
+                count: level.points.len() as u32,
+                first_point: tables.cage_point_count,
+                ..push
+            };
+            encoder.compute(&self.stencils, &push, push.count);
+        }
+        let count = tables.limit_point_count();
+        if count > 0 {
+            let push = TableNormalsPush {
+                rows: address(&buffers.limit_rows),
+                indices: address(&buffers.limit_indices),
+                count,
+                is_first_alone,
+                ..push
+            };
+            encoder.compute(&self.limits, &push, count);
+        }
     }
 }

@@ -95,7 +95,7 @@ fn evaluated_points(method: SurfaceMethod) -> u32 {
         SurfaceMethod::Gregory => 20,
         SurfaceMethod::Acc => 32,
         SurfaceMethod::Pm => 14,
-        SurfaceMethod::Fas | SurfaceMethod::Dfas | SurfaceMethod::Uniform | SurfaceMethod::Table => 0,
+        _ => 0,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use planish_gpu::{Device, SubmitReport};
-use planish_render::{Density, EndCap, FrameNeeds, GregoryPoints, Layers, SurfaceDesc, SurfaceMethod, View};
+use planish_render::{Density, EndCap, FrameNeeds, GregoryPoints, Layers, SurfaceDesc, SurfaceMethod, TableNormals, View};
 use planish_subdiv::refine::CreasePatches;
 use planish_subdiv::scheme::Scheme;
 use serde::Serialize;
@@ -111,6 +111,7 @@ impl<'a> Timed<'a> {
                 displaced: cage.is_displaced(),
                 gregory_points,
                 scheme: Scheme::CatmullClark,
+                table_normals: TableNormals::Tangents,
             },
             options: frame_options(method, Density::Tess(tess_factor), false),
         };

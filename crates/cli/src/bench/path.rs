@@ -3,7 +3,7 @@
 
 use anyhow::{Result, bail};
 use planish_gpu::Device;
-use planish_render::{Density, EndCap, GregoryPoints, Layers, SurfaceMethod, View};
+use planish_render::{Density, EndCap, GregoryPoints, Layers, SurfaceMethod, TableNormals, View};
 use planish_scene::Camera;
 use planish_subdiv::refine::CreasePatches;
 use planish_subdiv::scheme::Scheme;
@@ -105,6 +105,7 @@ impl Method {
         let arguments = bench.arguments;
         let setting = PlanSetting {
             scheme: Scheme::CatmullClark,
+            table_normals: TableNormals::Tangents,
             method,
             max_level: arguments.max_level,
             crease_patches: CreasePatches::default(),

@@ -19,45 +19,84 @@ use crate::topology::{Level, NONE};
 /// The tessellator makes 64 segments at most.
 pub const MAX_TABLE_LEVEL: u32 = 6;
 
+/// What to make of a cage for the method `table`, or for substitutes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BasisOptions {
+    /// Subdivision scheme.
+    pub scheme: Scheme,
+    /// How often the cage is split first: 1, or 2; 0 for substitutes.
+    pub steps: u32,
+    /// Basis functions of 2^`level` segments a side.
+    pub level: u32,
+    /// Level whose rings of vertices are asked for, if any: what geometric normals are made of.
+    pub ring_level: Option<u32>,
+    /// Points are weighed: else patches have their corners for controls, and no weights.
+    pub has_weights: bool,
+}
+
+/// How often a cage is split at most before tables take over.
+pub const MAX_TABLE_STEPS: u32 = 2;
+
+/// A face of a level: whose surface is drawn, and where it lies.
+#[derive(Clone, Copy, Debug, Default)]
+struct Place {
+    is_drawn: bool,
+    ptex_face: u32,
+    /// Parameters of its corners on the Ptex face, in 2^-level.
+    uvs: [[u32; 2]; 4],
+}
+
 impl Tables {
-    /// Tables of a cage for the method `table`: the step to level 1, its limit points, and basis functions of 2^`level` segments a side.
+    /// Tables of a cage for the method `table`: its steps, limit points of the last one, and basis functions over that one's faces.
     ///
     /// # Errors
     /// When the scheme does not take the cage: other faces than it knows, edges or vertices that are not manifold, hierarchical edits.
     ///
     /// # Panics
-    /// If `level` is above [`MAX_TABLE_LEVEL`].
-    pub fn of_basis(mesh: &ControlMesh, scheme: Scheme, level: u32) -> Result<Self, Error> {
-        assert!(level <= MAX_TABLE_LEVEL, "a level that the tessellator reaches");
+    /// If `level` is above [`MAX_TABLE_LEVEL`], or `steps` above [`MAX_TABLE_STEPS`].
+    pub fn of_basis(mesh: &ControlMesh, options: &BasisOptions) -> Result<Self, Error> {
+        let &BasisOptions { scheme, steps, level, ring_level, has_weights } = options;
+        assert!(level <= MAX_TABLE_LEVEL && steps <= MAX_TABLE_STEPS, "a level that the tessellator reaches");
         let base = Level::from_mesh(mesh)?;
         check_cage(mesh, &base, scheme)?;
         let rules = scheme.rules(mesh.options.triangles);
-        let cage = Poly::of_level(&base, mesh.options.creasing);
-        let step = Step::new(&cage, rules.as_ref());
-        let mut tables = Self::of_step(&base, &step, scheme);
+        let mut poly = Poly::of_level(&base, mesh.options.creasing);
+        let mut places = base_places(&base, scheme);
+        let mut tables = Self::of_cage(&base, scheme, steps);
+        let mut rings = Vec::new();
+        for step in 0..=steps {
+            if ring_level == Some(step) {
+                rings = fans(&poly, tables.levels[step as usize].points.start);
+            }
+            if step < steps {
+                places = child_places(&poly, &places, rules.as_ref());
+                let split = Step::new(&poly, rules.as_ref());
+                tables.add_step(&split.rows);
+                poly = split.child;
+            }
+        }
         let builder = Builder {
             rules: rules.as_ref(),
-            poly: &step.child,
+            poly: &poly,
             creasing: mesh.options.creasing,
-            first_point: tables.cage_point_count,
+            first_point: tables.levels[steps as usize].points.start,
+            has_weights,
             masks: LimitMasks::default(),
             limits: LimitTable::default(),
-            limit_of: vec![NONE; step.child.vertex_sharpness.len()],
-            edge_of: vec![(NONE, false); step.child.half_of_edge.len()],
+            limit_of: vec![NONE; poly.vertex_sharpness.len()],
+            edge_of: vec![(NONE, false); poly.half_of_edge.len()],
             known: HashMap::new(),
             known_limits: HashMap::new(),
-            table: BasisTable { level, ..BasisTable::default() },
+            table: BasisTable { level, steps, ..BasisTable::default() },
         };
-        (tables.basis, tables.limits) = builder.build(&base, &cage, scheme);
+        (tables.basis, tables.limits) = builder.build(&places);
+        (tables.basis.ring_level, tables.basis.rings) = (ring_level.unwrap_or(0), rings);
         Ok(tables)
     }
 
-    /// Points of the cage and of level 1, and where densities are known.
-    fn of_step(base: &Level, step: &Step, scheme: Scheme) -> Self {
+    /// Points of the cage, and where densities are known.
+    fn of_cage(base: &Level, scheme: Scheme, steps: u32) -> Self {
         let cage_point_count = base.tags.len() as u32;
-        let row_count = step.rows.len() as u32;
-        let points = cage_point_count..cage_point_count + row_count;
-        let child = LevelPoints { points, dispatches: std::iter::once(0..row_count).collect(), edits: 0..0 };
         let mut slots = DensitySlots::new(base, &[]);
         let mut faces = ptex_faces(base);
         if scheme != Scheme::CatmullClark {
@@ -71,16 +110,75 @@ impl Tables {
         }
         Self {
             cage_point_count,
-            levels: vec![LevelPoints { points: 0..cage_point_count, ..LevelPoints::default() }, child],
-            stencils: stencils(&step.rows),
-            patch_ranges: vec![0..0; 2],
-            irregular_ranges: vec![0..0; 2],
+            levels: vec![LevelPoints { points: 0..cage_point_count, ..LevelPoints::default() }],
+            patch_ranges: vec![0..0; steps as usize + 1],
+            irregular_ranges: vec![0..0; steps as usize + 1],
             ptex_faces: faces,
             slots,
-            last_level: 1,
+            last_level: steps,
             ..Self::default()
         }
     }
+
+    /// The points of the next level.
+    fn add_step(&mut self, rows: &[Option<Vec<(u32, f64)>>]) {
+        let (first_parent, first) = (self.levels[self.levels.len() - 1].points.start, self.point_count());
+        let first_row = first - self.cage_point_count;
+        let dispatches = std::iter::once(first_row..first_row + rows.len() as u32).collect();
+        append_stencils(&mut self.stencils, rows, first_parent);
+        self.levels.push(LevelPoints { points: first..first + rows.len() as u32, dispatches, edits: 0..0 });
+    }
+}
+
+/// The faces of a cage. One that becomes several Ptex faces has parameters first when it is split.
+fn base_places(base: &Level, scheme: Scheme) -> Vec<Place> {
+    let mut ptex_face = 0;
+    let place = |face: u32| {
+        let sides = base.sides(face);
+        let uvs = if sides == 3 { [[0, 0], [1, 0], [0, 1], [0, 0]] } else { [[0, 0], [1, 0], [1, 1], [0, 1]] };
+        let place = Place { is_drawn: base.is_drawn(face), ptex_face, uvs };
+        ptex_face += if sides == 4 || scheme.is_triangle(sides) { 1 } else { sides };
+        place
+    };
+    (0..base.face_count()).map(place).collect()
+}
+
+/// The children of faces, in their order.
+fn child_places(poly: &Poly, places: &[Place], rules: &dyn Rules) -> Vec<Place> {
+    let mut children = Vec::new();
+    for (face, place) in (0..).zip(places) {
+        let sides = poly.sides(face);
+        let in_triangles = rules.splits_in_triangles(sides);
+        let at = |i: u32| place.uvs[(i % sides) as usize];
+        let sum = |a: [u32; 2], b: [u32; 2]| [a[0] + b[0], a[1] + b[1]];
+        let corner = |i: u32| at(i).map(|c| 2 * c);
+        let middle = |i: u32| sum(at(i), at(i + 1));
+        for i in 0..sides {
+            let before = i + sides - 1;
+            let (ptex_face, uvs) = if in_triangles {
+                (place.ptex_face, [corner(i), middle(i), middle(before), corner(i)])
+            } else if sides == 4 {
+                (place.ptex_face, [corner(i), middle(i), sum(at(0), at(2)), middle(before)])
+            } else {
+                // A Ptex face for each corner, which is whole.
+                (place.ptex_face + i, [[0, 0], [2, 0], [2, 2], [0, 2]])
+            };
+            children.push(Place { uvs, ptex_face, ..*place });
+        }
+        if in_triangles {
+            children.push(Place { uvs: [middle(0), middle(1), middle(2), middle(0)], ..*place });
+        }
+    }
+    children
+}
+
+/// The rings of a level's vertices: the ends of their edges, counter-clockwise.
+fn fans(poly: &Poly, first_point: u32) -> Vec<(Vec<u32>, bool)> {
+    let ring = |vertex: u32| {
+        let fan = poly.fan(vertex, None);
+        (fan.ends.iter().map(|&end| first_point + end).collect(), fan.is_closed)
+    };
+    (0..poly.vertex_sharpness.len() as u32).map(ring).collect()
 }
 
 fn check_cage(mesh: &ControlMesh, base: &Level, scheme: Scheme) -> Result<(), Error> {
@@ -96,8 +194,7 @@ fn check_cage(mesh: &ControlMesh, base: &Level, scheme: Scheme) -> Result<(), Er
     Ok(())
 }
 
-fn stencils(rows: &[Option<Vec<(u32, f64)>>]) -> StencilTable {
-    let mut table = StencilTable::default();
+fn append_stencils(table: &mut StencilTable, rows: &[Option<Vec<(u32, f64)>>], first_point: u32) {
     for row in rows {
         let mut row = row.clone().expect("a whole mesh");
         // The largest weight is the origin's, which what the others round to falls to.
@@ -105,10 +202,9 @@ fn stencils(rows: &[Option<Vec<(u32, f64)>>]) -> StencilTable {
         row.swap(0, largest);
         let (first_index, first_weight) = (table.indices.len() as u32, table.weights.len() as u32);
         table.rows.push(StencilRow { first_index, first_weight, count: row.len() as u32 });
-        table.indices.extend(row.iter().map(|&(point, _)| point));
+        table.indices.extend(row.iter().map(|&(point, _)| first_point + point));
         table.weights.extend(row.iter().map(|&(_, weight)| weight as f32));
     }
-    table
 }
 
 /// A configuration's table, where it lies among all weights.
@@ -120,11 +216,12 @@ struct Known {
 
 struct Builder<'a> {
     rules: &'a dyn Rules,
-    /// Level 1.
+    /// The last level.
     poly: &'a Poly,
     creasing: Creasing,
     /// Where its points begin.
     first_point: u32,
+    has_weights: bool,
     masks: LimitMasks,
     limits: LimitTable,
     /// Limit point of each vertex.
@@ -137,31 +234,18 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn build(mut self, base: &Level, cage: &Poly, scheme: Scheme) -> (BasisTable, LimitTable) {
-        let (mut child, mut ptex_face) = (0, 0);
-        for face in 0..cage.face_count() {
-            let sides = cage.sides(face);
-            let in_triangles = self.rules.splits_in_triangles(sides);
-            let count = if in_triangles { 4 } else { sides };
-            let is_one_ptex_face = sides == 4 || scheme.is_triangle(sides);
-            for i in 0..if base.is_drawn(face) { count } else { 0 } {
-                let uvs = if in_triangles {
-                    TRIANGLE_UVS[i as usize]
-                } else if is_one_ptex_face {
-                    quad_uvs(i)
-                } else {
-                    [[0, 0], [2, 0], [2, 2], [0, 2]]
-                };
-                let ptex_face = ptex_face + if is_one_ptex_face { 0 } else { i };
-                self.add_patch(child + i, ptex_face, uvs);
+    fn build(mut self, places: &[Place]) -> (BasisTable, LimitTable) {
+        for (face, place) in (0..).zip(places).filter(|(_, place)| place.is_drawn) {
+            if self.has_weights {
+                self.add_patch(face, place);
+            } else {
+                self.add_substitute(face, place);
             }
-            child += count;
-            ptex_face += if is_one_ptex_face { 1 } else { sides };
         }
         (self.table, self.limits)
     }
 
-    fn add_patch(&mut self, face: u32, ptex_face: u32, uvs: [[u32; 2]; 4]) {
+    fn add_patch(&mut self, face: u32, place: &Place) {
         let poly = self.poly;
         let sides = poly.sides(face);
         let faces = poly.ring(&[face], poly.width(self.rules));
@@ -169,10 +253,7 @@ impl Builder<'_> {
         let turns = poly.half_edges(face).map(|h| walk(poly, h, &faces, &[]));
         let (turn, walk) = (0..).zip(turns).min_by(|(_, a), (_, b)| a.word.cmp(&b.word)).expect("a face has edges");
         let (first_weight, first_control, control_count) = self.table_of(&walk, Extent::Face);
-        let mut patch = BasisPatch { first_control, control_count, first_weight, ptex_face, ..BasisPatch::default() };
-        if sides == 3 {
-            patch.flags |= TABLE_TRIANGLE;
-        }
+        let mut patch = BasisPatch { first_control, control_count, first_weight, ..of_place(place, sides, turn) };
         let first = poly.half_edges(face).start;
         for i in 0..sides {
             let h = first + (turn + i) % sides;
@@ -183,13 +264,20 @@ impl Builder<'_> {
             patch.edges[i as usize] = 2 * edge + u32::from(is_along != is_first);
             let is_crease = poly.twin(h) != BORDER && poly.sharpness(h) >= INFINITE_SHARPNESS;
             patch.flags |= u32::from(is_crease) << i | u32::from(!is_smooth) << (4 + i);
-            let [u, v] = uvs[((turn + i) % sides) as usize];
-            patch.corner_uvs |= (u | v << 2) << (4 * i);
         }
         if sides == 3 {
             patch.corners[3] = patch.corners[0];
         }
         self.table.patches.push(patch);
+    }
+
+    /// A face of which the corners alone are known.
+    fn add_substitute(&mut self, face: u32, place: &Place) {
+        let vertices = self.poly.vertices(face);
+        let first_control = self.table.controls.len() as u32;
+        self.table.controls.extend(vertices.iter().map(|&vertex| self.first_point + vertex));
+        let sides = vertices.len() as u32;
+        self.table.patches.push(BasisPatch { first_control, control_count: sides, ..of_place(place, sides, 0) });
     }
 
     /// Where the table of a piece lies, and its controls.
@@ -266,21 +354,10 @@ impl Builder<'_> {
     }
 }
 
-/// Corners of a triangle's four, in halves of its sides: those at its corners, from there on, and the middle one.
-const TRIANGLE_UVS: [[[u32; 2]; 4]; 4] = [
-    [[0, 0], [1, 0], [0, 1], [0, 0]],
-    [[2, 0], [1, 1], [1, 0], [2, 0]],
-    [[0, 2], [0, 1], [1, 1], [0, 2]],
-    [[1, 0], [1, 1], [0, 1], [1, 0]],
-];
-
-/// Corners of the quarter of a quad at its corner i, from there on, in halves.
-fn quad_uvs(i: u32) -> [[u32; 2]; 4] {
-    const CORNERS: [[u32; 2]; 4] = [[0, 0], [2, 0], [2, 2], [0, 2]];
-    let at = |i: u32| CORNERS[(i % 4) as usize];
-    let middle = |i: u32| {
-        let (a, b) = (at(i), at(i + 1));
-        [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]
-    };
-    [at(i), middle(i), [1, 1], middle(i + 3)]
+/// A patch that lies there, beginning at corner `turn`.
+fn of_place(place: &Place, sides: u32, turn: u32) -> BasisPatch {
+    let uv = |i: u32| place.uvs[((turn + i) % sides) as usize];
+    let corner_uvs = (0..sides).fold(0, |uvs, i| uvs | (uv(i)[0] | uv(i)[1] << 3) << (6 * i));
+    let flags = if sides == 3 { TABLE_TRIANGLE } else { 0 };
+    BasisPatch { ptex_face: place.ptex_face, corner_uvs, flags, ..BasisPatch::default() }
 }

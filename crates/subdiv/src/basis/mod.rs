@@ -17,4 +17,4 @@ pub(crate) mod poly;
 mod step;
 mod walk;
 
-pub use build::MAX_TABLE_LEVEL;
+pub use build::{BasisOptions, MAX_TABLE_LEVEL, MAX_TABLE_STEPS};

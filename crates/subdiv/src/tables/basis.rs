@@ -1,4 +1,4 @@
-//! Basis function tables (Hollaender and Boubekeur 2010) as the GPU reads them: faces of the cage subdivided once, edges between them,
+//! Basis function tables (Hollaender and Boubekeur 2010) as the GPU reads them: faces of the cage after its first steps, edges between them,
 //! and the weights of the points of their grids.
 
 use crate::tables::merge::following;
@@ -6,7 +6,7 @@ use crate::tables::merge::following;
 /// Flag of a [`BasisPatch`]: it has three sides.
 pub const TABLE_TRIANGLE: u32 = 1 << 8;
 
-/// A face of the cage after one step of subdivision.
+/// A face of the cage after its first steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BasisPatch {
     /// Limit points; of a triangle the last is the first.
@@ -21,7 +21,7 @@ pub struct BasisPatch {
     pub first_weight: u32,
     /// Ptex face, counted within the mesh.
     pub ptex_face: u32,
-    /// Parameters of the corners on the Ptex face in halves: bits 4i and on of corner i, two for u and two for v.
+    /// Parameters of the corners on the Ptex face in 2^-steps: bits 6i and on of corner i, three for u and three for v.
     pub corner_uvs: u32,
     /// Bits 0-3: edges whose normals are the face's own; 4-7: corners; and [`TABLE_TRIANGLE`].
     pub flags: u32,
@@ -43,6 +43,13 @@ pub struct BasisEdge {
 pub struct BasisTable {
     /// A side of a face has 2^level segments.
     pub level: u32,
+    /// The faces are those of the cage split so often.
+    pub steps: u32,
+    /// Level of the vertices that have rings.
+    pub ring_level: u32,
+    /// For each vertex of that level the ends of its edges, counter-clockwise, and whether the last lies beside the first; empty where
+    /// no geometric normals are asked for.
+    pub rings: Vec<(Vec<u32>, bool)>,
     /// Faces that have a surface.
     pub patches: Vec<BasisPatch>,
     /// Their edges.
@@ -59,7 +66,7 @@ impl BasisTable {
     /// Appends another mesh's; `points` says where its points are now, `first_limit` where its limit points begin. Returns the range
     /// of its patches.
     pub(super) fn append(&mut self, part: &Self, points: &[u32], first_limit: u32) -> std::ops::Range<u32> {
-        self.level = self.level.max(part.level);
+        (self.level, self.steps, self.ring_level) = (part.level, part.steps, part.ring_level);
         let range = following(self.patches.len() as u32, part.patches.len() as u32);
         let (first_control, first_edge) = (self.controls.len() as u32, self.edges.len() as u32);
         let first_weight = self.weights.len() as u32;
@@ -74,6 +81,9 @@ impl BasisTable {
             first_control: edge.first_control + first_control,
             first_weight: edge.first_weight + first_weight,
             ..*edge
+        }));
+        self.rings.extend(part.rings.iter().map(|(ring, is_closed)| {
+            (ring.iter().map(|&point| points[point as usize]).collect(), *is_closed)
         }));
         self.controls.extend(part.controls.iter().map(|&point| points[point as usize]));
         self.weights.extend(&part.weights);
