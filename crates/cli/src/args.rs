@@ -228,6 +228,9 @@ pub struct BenchArguments {
     /// Time fas, dfas, both implementations of gregory and, on cages that they have patches for, acc and pm in turns instead, with nothing culled, at tess factors 6, 10, 17 and 25 or those given
     #[arg(long, conflicts_with_all = ["levels", "cpu", "path", "cameras", "creases", "seams"])]
     pub gregory: bool,
+    /// Time method table with flat, phong and pn, fas and dfas in turns instead, with nothing culled, at tess factors 4, 16 and 32 or those given
+    #[arg(long, conflicts_with_all = ["levels", "cpu", "path", "cameras", "creases", "seams", "gregory"])]
+    pub tables: bool,
     /// Time the building of tables for these levels instead, on one thread of the CPU; needs no device
     #[arg(long)]
     pub cpu: bool,

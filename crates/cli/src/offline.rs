@@ -8,8 +8,8 @@ use planish_gpu::{Calls, Device, Encoder, Recorded, SubmitReport};
 use planish_render::density::{MAX_UNCUT_DENSITY, isolation_level, largest_density};
 use planish_render::{
     Culling, Density, DrawOptions, DrawPasses, EndCap, FrameCamera, FrameNeeds, FrameOptions, FrameStages,
-    GregoryPoints, Layers, ObjectDesc, Selection, Spacing, Status, Surface, SurfaceDesc, SurfaceMethod, TableNormals, Targets, View,
-    preprocess,
+    GregoryPoints, Layers, ObjectDesc, Selection, Spacing, Status, Surface, SurfaceDesc, SurfaceMethod, TableNormals,
+    Targets, View, preprocess,
 };
 use planish_scene::{Camera, Lens, Pose};
 use planish_subdiv::ControlMesh;
@@ -142,7 +142,8 @@ impl Plan {
         let (camera, objects) = first.expect("a frame at least");
         let is_gregory = setting.method.is_one_patch_a_face();
         // Tables are over the cage subdivided once.
-        let level = if is_gregory || setting.method.is_grid() { 0 } else { isolation_level(density, setting.max_level) };
+        let level =
+            if is_gregory || setting.method.is_grid() { 0 } else { isolation_level(density, setting.max_level) };
         // Stencils are over the cage: end caps lie deeper.
         let gregory_points =
             if setting.method == SurfaceMethod::Gregory { setting.gregory_points } else { GregoryPoints::TwoStage };
@@ -220,7 +221,9 @@ pub fn check_gregory(cage: &Cage, desc: &SurfaceDesc) -> Result<()> {
 /// Refuses what motion is not known of.
 fn check_motion(cage: &Cage, plan: &Plan) -> Result<()> {
     if plan.needs.moves && cage.deforms() && plan.desc.has_gregory_patches() {
-        bail!("motion of meshes that deform is not known on Gregory patches: expected method dfas, fas, table or uniform");
+        bail!(
+            "motion of meshes that deform is not known on Gregory patches: expected method dfas, fas, table or uniform"
+        );
     }
     if plan.needs.moves && cage.deforms() && plan.desc.method.is_substitute() {
         bail!("motion of meshes that deform is not known on substitutes: expected method dfas, fas, table or uniform");

@@ -51,7 +51,8 @@ pub use frame::FrameStages;
 pub use lists::{PatchKind, Status};
 pub use objects::ObjectDesc;
 pub use options::{
-    Culling, Density, EndCap, FrameNeeds, FrameOptions, GregoryPoints, Selection, Spacing, SurfaceMethod, TableNormals, View,
+    Culling, Density, EndCap, FrameNeeds, FrameOptions, GregoryPoints, Selection, Spacing, SurfaceMethod, TableNormals,
+    View,
 };
 pub use surface::{MemoryBytes, PreprocessTimes, Preprocessed, Surface, SurfaceDesc, preprocess};
 pub use targets::{Layers, NO_SURFACE, Targets};

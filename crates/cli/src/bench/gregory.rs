@@ -59,6 +59,7 @@ pub fn run(bench: &Bench, device: &Device, cage: &Cage) -> Result<Vec<GregoryRow
                 gregory_points,
                 // Of ACC and Pm-patches nothing is.
                 is_culled: false,
+                ..Setting::default()
             };
             match Timed::new(bench, device, cage, setting) {
                 Ok(timed) => of_factor.push((name, method, timed)),

@@ -82,9 +82,11 @@ impl BasisTable {
             first_weight: edge.first_weight + first_weight,
             ..*edge
         }));
-        self.rings.extend(part.rings.iter().map(|(ring, is_closed)| {
-            (ring.iter().map(|&point| points[point as usize]).collect(), *is_closed)
-        }));
+        self.rings.extend(
+            part.rings
+                .iter()
+                .map(|(ring, is_closed)| (ring.iter().map(|&point| points[point as usize]).collect(), *is_closed)),
+        );
         self.controls.extend(part.controls.iter().map(|&point| points[point as usize]));
         self.weights.extend(&part.weights);
         self.tangents.extend(&part.tangents);
