@@ -190,12 +190,14 @@ struct SceneData {
     GregoryStencils stencils;   // of Gregory patches
     RingPoints stencil_points;
     Weights stencil_weights;
-    TablePatches table_patches; // of the method `table` and its rivals; these six are empty for others
+    TablePatches table_patches; // of the method `table` and its rivals; these eight are empty for others
     Points table_normals;       // of the points of all levels, where surfaces are shaded by them
     TableEdges table_edges;
     Indices table_controls;
     Weights table_weights;
     TableTangents table_tangents;
+    ShortWeights short_weights;  // instead of both, where they have 16 bits
+    ShortWeights short_tangents;
     PtexFaces ptex_faces;
     Indices neighbour_first; // slot to its first in `neighbours`
     Indices neighbours;
@@ -242,6 +244,7 @@ struct SceneData {
     uint first_limit_mark;
     uint table_level;        // 2^this segments a side of a table's patches
     uint table_steps;        // and they are faces of the cage split so often
+    float short_scale;       // of weights of 16 bits: what 1 stands for
     uvec2 materials;         // address of the MaterialTables (materials.glsl), for holes in them; 0 where nothing has any
 };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer SceneTables { SceneData v; };

@@ -10,6 +10,23 @@ const uint NORMALS_SUBDIVISION = 1; // Subdivision Shading (Alexa and Boubekeur 
 const uint NORMALS_GEOMETRIC = 2;  // interpolated between those of the mesh that was split
 layout(constant_id = 15) const uint NORMALS = NORMALS_TANGENTS;
 
+// Whether weights have 16 bits.
+layout(constant_id = 16) const bool SHORT_WEIGHTS = false;
+
+float table_weight(SceneTables scene, uint at)
+{
+    if (SHORT_WEIGHTS) {
+        vec2 both = unpackSnorm2x16(scene.v.short_weights.v[at >> 1]);
+        return scene.v.short_scale * ((at & 1u) != 0u ? both.y : both.x);
+    }
+    return scene.v.table_weights.v[at];
+}
+
+vec2 table_slope(SceneTables scene, uint at)
+{
+    return SHORT_WEIGHTS ? unpackSnorm2x16(scene.v.short_tangents.v[at]) : scene.v.table_tangents.v[at];
+}
+
 // A point in the mesh's own space, and its unit normal.
 struct TablePoint {
     vec3 position;
@@ -33,10 +50,10 @@ TablePoint table_row(SceneTables scene, TableRange range, uint row)
     for (uint i = NORMALS == NORMALS_SUBDIVISION ? 0u : 1u; i < range.control_count; ++i) {
         uint control = scene.v.table_controls.v[range.first_control + i];
         precise vec3 offset = scene.v.points.v[control] - origin;
-        float weight = scene.v.table_weights.v[first + i];
+        float weight = table_weight(scene, first + i);
         position = position + weight * offset;
         if (NORMALS == NORMALS_TANGENTS) {
-            vec2 slope = scene.v.table_tangents.v[first + i];
+            vec2 slope = table_slope(scene, first + i);
             along_u = along_u + slope.x * offset;
             along_v = along_v + slope.y * offset;
         } else if (NORMALS == NORMALS_SUBDIVISION) {
@@ -55,7 +72,7 @@ vec3 next_table_row(SceneTables scene, TableRange range, uint row)
     uint first = range.first_weight + row * range.control_count;
     for (uint i = 1u; i < range.control_count; ++i) {
         vec3 offset = scene.v.next_points.v[scene.v.table_controls.v[range.first_control + i]] - origin;
-        position += scene.v.table_weights.v[first + i] * offset;
+        position += table_weight(scene, first + i) * offset;
     }
     return position;
 }

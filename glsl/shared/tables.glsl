@@ -213,6 +213,8 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Rin
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TablePatches { TablePatch v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TableEdges { TableEdge v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TableTangents { vec2 v[]; };
+// Two numbers of 16 bits a word, from -1 to 1 in steps of 1/32767: of weights one after the other, of tangents those of one point.
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer ShortWeights { uint v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Spokes { Spoke v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RivalSpokes { RivalSpoke v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SpokeRanges { uvec2 v[]; };

@@ -17,7 +17,8 @@ use crate::aov::AovList;
 use crate::frames::FrameRange;
 use crate::names::{
     CreasePatchesName, DisplacementKindName, DisplacementLayoutName, EndCapName, FilterName, GregoryNormalsName,
-    GregoryPointsName, LodName, MethodName, MetricName, SchemeName, SpacingName, TableNormalsName, ViewName, name_of,
+    GregoryPointsName, LodName, MethodName, MetricName, SchemeName, SpacingName, TableNormalsName, TableWeightsName,
+    ViewName, name_of,
 };
 use crate::values::{self, FrameRate, MAX_LEVEL};
 
@@ -329,6 +330,9 @@ pub struct SurfaceArguments {
     /// Where normals of method table come from
     #[arg(long, value_enum, default_value_t = TableNormalsName::Tangent)]
     pub table_normals: TableNormalsName,
+    /// How weights of method table are stored
+    #[arg(long, value_enum, default_value_t = TableWeightsName::Float)]
+    pub table_weights: TableWeightsName,
     /// Trade bitwise equal seams for speed
     #[arg(long)]
     pub no_watertight: bool,

@@ -57,6 +57,7 @@ fn surface_desc(arguments: &InfoArguments, cage: &Cage) -> Result<SurfaceDesc> {
                 gregory_points,
                 scheme: surface.scheme()?,
                 table_normals: surface.table_normals.into(),
+                table_weights: surface.table_weights.into(),
             };
             check_gregory(cage, &desc)?;
             Ok(desc)

@@ -1,7 +1,7 @@
 //! Names on the command line for what the renderer offers.
 
 use clap::ValueEnum;
-use planish_render::{EndCap, GregoryPoints, Spacing, TableNormals, View};
+use planish_render::{EndCap, GregoryPoints, Spacing, TableNormals, TableWeights, View};
 use planish_scene::displacement::{DisplacementKind, DisplacementLayout};
 use planish_subdiv::refine::CreasePatches;
 
@@ -111,6 +111,24 @@ impl From<TableNormalsName> for TableNormals {
             TableNormalsName::Subdivision1 => Self::Subdivision(1),
             TableNormalsName::Subdivision2 => Self::Subdivision(2),
             TableNormalsName::Geometric => Self::Geometric,
+        }
+    }
+}
+
+/// How weights of tables are stored, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TableWeightsName {
+    /// 32-bit floats
+    Float,
+    /// 16 bits
+    Short,
+}
+
+impl From<TableWeightsName> for TableWeights {
+    fn from(name: TableWeightsName) -> Self {
+        match name {
+            TableWeightsName::Float => Self::Float,
+            TableWeightsName::Short => Self::Short,
         }
     }
 }

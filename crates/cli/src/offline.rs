@@ -9,7 +9,7 @@ use planish_render::density::{MAX_UNCUT_DENSITY, isolation_level, largest_densit
 use planish_render::{
     Culling, Density, DrawOptions, DrawPasses, EndCap, FrameCamera, FrameNeeds, FrameOptions, FrameStages,
     GregoryPoints, Layers, ObjectDesc, Selection, Spacing, Status, Surface, SurfaceDesc, SurfaceMethod, TableNormals,
-    Targets, View, preprocess,
+    TableWeights, Targets, View, preprocess,
 };
 use planish_scene::{Camera, Lens, Pose};
 use planish_subdiv::ControlMesh;
@@ -31,6 +31,7 @@ pub struct PlanSetting {
     pub method: SurfaceMethod,
     pub scheme: Scheme,
     pub table_normals: TableNormals,
+    pub table_weights: TableWeights,
     /// No irregularity is isolated deeper.
     pub max_level: u32,
     pub crease_patches: CreasePatches,
@@ -105,6 +106,7 @@ impl Plan {
             method,
             scheme: surface.scheme()?,
             table_normals: surface.table_normals.into(),
+            table_weights: surface.table_weights.into(),
             max_level: surface.max_level(),
             crease_patches: surface.crease_patches.into(),
             end_cap: surface.end_cap.into(),
@@ -156,6 +158,7 @@ impl Plan {
             gregory_points,
             scheme: setting.scheme,
             table_normals: setting.table_normals,
+            table_weights: setting.table_weights,
         };
         let needs = FrameNeeds {
             watertight: setting.watertight,

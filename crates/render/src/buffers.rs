@@ -16,7 +16,7 @@ use crate::error::Error;
 use crate::lists::{Capacities, KIND_COUNT, LIST_COUNT, LIST_PHASES, Phases, sum_of};
 use crate::marks::Marks;
 use crate::objects::ObjectSizes;
-use crate::options::SurfaceMethod;
+use crate::options::{SurfaceMethod, TableWeights};
 use crate::table::BasisBuffers;
 use crate::upload::{array, mapped, table};
 
@@ -53,7 +53,13 @@ pub(crate) struct TableBuffers {
 }
 
 impl TableBuffers {
-    pub fn new(device: &Device, tables: &Tables, marks: &Marks, density_scales: &[f32]) -> Result<Self, Error> {
+    pub fn new(
+        device: &Device,
+        tables: &Tables,
+        marks: &Marks,
+        density_scales: &[f32],
+        table_weights: TableWeights,
+    ) -> Result<Self, Error> {
         let (stencils, limits) = (&tables.stencils, &tables.limits);
         let gregory_stencils = &tables.gregory.stencils;
         let needs_spokes = tables.gregory.needs_spokes();
@@ -94,7 +100,7 @@ impl TableBuffers {
             stars: lists(device, "stars", &star_marks)?,
             density_scales: table(device, "density scales", density_scales)?,
             mark_groups: table(device, "mark groups", &marks.groups)?,
-            basis: BasisBuffers::new(device, tables)?,
+            basis: BasisBuffers::new(device, tables, table_weights)?,
         })
     }
 

@@ -61,6 +61,7 @@ pub(crate) fn depth_options(surface: &SurfaceDesc, needs: &FrameNeeds) -> Pipeli
         moves: false,
         cutouts: needs.cutouts,
         table_normals: surface.table_normals,
+        table_weights: surface.table_weights,
     }
 }
 

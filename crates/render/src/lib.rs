@@ -52,7 +52,7 @@ pub use lists::{PatchKind, Status};
 pub use objects::ObjectDesc;
 pub use options::{
     Culling, Density, EndCap, FrameNeeds, FrameOptions, GregoryPoints, Selection, Spacing, SurfaceMethod, TableNormals,
-    View,
+    TableWeights, View,
 };
 pub use surface::{MemoryBytes, PreprocessTimes, Preprocessed, Surface, SurfaceDesc, preprocess};
 pub use targets::{Layers, NO_SURFACE, Targets};

@@ -69,6 +69,17 @@ pub enum TableNormals {
     Geometric,
 }
 
+/// How weights of tables are stored.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TableWeights {
+    /// 32-bit floats.
+    #[default]
+    Float,
+    /// 16 bits, in steps of 1/32767 of the largest: half the bytes. Sums of weights are 1 as before, as points are weighed relative to one of
+    /// them, and both sides of an edge have the same weights.
+    Short,
+}
+
 /// How the control points of Gregory patches are made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GregoryPoints {

@@ -9,7 +9,7 @@ use planish_subdiv::gregory::Rival;
 
 use crate::error::Error;
 use crate::lists::PatchKind;
-use crate::options::{EndCap, Spacing, SurfaceMethod, TableNormals, View};
+use crate::options::{EndCap, Spacing, SurfaceMethod, TableNormals, TableWeights, View};
 use crate::program::stage;
 use crate::targets::{DEPTH_FORMAT, Layers};
 
@@ -74,6 +74,8 @@ pub(crate) struct PipelineOptions {
     pub cutouts: bool,
     /// Where normals by table come from.
     pub table_normals: TableNormals,
+    /// How weights of tables are stored.
+    pub table_weights: TableWeights,
 }
 
 /// The pipeline of each kind of patch that the method has: each on a thread of its own, as drivers compile on the caller's.
@@ -119,6 +121,10 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
         SpecConstant { id: shaders::bspline_patch_colors_tese::SPEC_MOVING, bits: u32::from(options.moves) },
         SpecConstant { id: shaders::table_patch_lean_tese::SPEC_EVALUATE, bits: evaluation(options.method) },
         SpecConstant { id: shaders::table_patch_lean_tese::SPEC_NORMALS, bits: table_normals(options.table_normals) },
+        SpecConstant {
+            id: shaders::table_patch_lean_tese::SPEC_SHORT_WEIGHTS,
+            bits: u32::from(options.table_weights == TableWeights::Short),
+        },
     ];
     let fragment = fragment_stage(options);
     let fragment_constants = [

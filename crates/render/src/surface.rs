@@ -23,7 +23,7 @@ use crate::lists::{Capacities, Phases, Status};
 use crate::marks::Marks;
 use crate::motion::MotionBuffers;
 use crate::objects::{CageFacts, MeshFacts, ObjectDesc};
-use crate::options::{Culling, EndCap, FrameOptions, GregoryPoints, SurfaceMethod, TableNormals};
+use crate::options::{Culling, EndCap, FrameOptions, GregoryPoints, SurfaceMethod, TableNormals, TableWeights};
 use crate::upload::address;
 
 /// What to make of cages.
@@ -45,6 +45,8 @@ pub struct SurfaceDesc {
     pub scheme: Scheme,
     /// Where normals of surfaces by table come from.
     pub table_normals: TableNormals,
+    /// How weights of tables are stored.
+    pub table_weights: TableWeights,
 }
 
 impl SurfaceDesc {
@@ -252,7 +254,7 @@ impl Surface {
         let marks = Marks::new(&phases);
         let density_scales = density_scales(meshes, &ranges, tables.cage_point_count);
         let capacities = Capacities::new(objects, &ranges, device.is_software(), capacity);
-        let buffers = TableBuffers::new(device, &tables, &marks, &density_scales)?;
+        let buffers = TableBuffers::new(device, &tables, &marks, &density_scales, desc.table_weights)?;
         let frame = FrameBuffers::new(device, &tables, &gpu_objects, &sizes, &marks)?;
         let lists = ListBuffers::new(device, &capacities, &phases, desc.method)?;
         let tex_coords = if desc.displaced && desc.method == SurfaceMethod::Gregory {
@@ -454,6 +456,8 @@ impl Surface {
             table_controls: address(&tables.basis.controls),
             table_weights: address(&tables.basis.weights),
             table_tangents: address(&tables.basis.tangents),
+            short_weights: address(&tables.basis.weights),
+            short_tangents: address(&tables.basis.tangents),
             ptex_faces: address(&tables.ptex_faces),
             neighbour_first: address(&tables.neighbours[0]),
             neighbours: address(&tables.neighbours[1]),
@@ -500,7 +504,9 @@ impl Surface {
             first_limit_mark: self.marks.first_limit,
             table_level: self.tables.basis.level,
             table_steps: self.tables.basis.steps,
+            short_scale: tables.basis.short_scale,
             materials: [self.materials as u32, (self.materials >> 32) as u32],
+            ..SceneData::default()
         };
         Ok(frame.scene.write(0, &[data])?)
     }

@@ -8,7 +8,7 @@ use planish_subdiv::tables::{BasisEdge, BasisPatch, BasisTable, Tables};
 
 use crate::error::Error;
 use crate::lists::{CHUNK, LIST_BASE};
-use crate::options::{FrameNeeds, TableNormals};
+use crate::options::{FrameNeeds, TableNormals, TableWeights};
 use crate::program::{compute_pipeline, specialized_compute_pipeline};
 use crate::select::head_offset;
 use crate::surface::Surface;
@@ -21,6 +21,8 @@ pub(crate) struct BasisBuffers {
     pub controls: Buffer,
     pub weights: Buffer,
     pub tangents: Buffer,
+    /// What 1 stands for in weights of 16 bits.
+    pub short_scale: f32,
     pub rings: Buffer,
     pub ring_indices: Buffer,
     /// Of the points of all levels, which frames make.
@@ -28,8 +30,9 @@ pub(crate) struct BasisBuffers {
 }
 
 impl BasisBuffers {
-    pub fn new(device: &Device, tables: &Tables) -> Result<Self, Error> {
+    pub fn new(device: &Device, tables: &Tables, stored: TableWeights) -> Result<Self, Error> {
         let basis = &tables.basis;
+        let short_scale = basis.weights.iter().fold(1.0, |most: f32, weight| most.max(weight.abs()));
         let (rings, ring_indices) = rings(basis);
         let normal_count = if basis.rings.is_empty() { 0 } else { tables.point_count() };
         Ok(Self {
@@ -39,8 +42,15 @@ impl BasisBuffers {
             patches: table(device, "table patches", &basis.patches.iter().map(patch).collect::<Vec<_>>())?,
             edges: table(device, "table edges", &basis.edges.iter().map(edge).collect::<Vec<_>>())?,
             controls: table(device, "table controls", &basis.controls)?,
-            weights: table(device, "basis functions", &basis.weights)?,
-            tangents: table(device, "tangents of basis functions", &basis.tangents)?,
+            weights: match stored {
+                TableWeights::Float => table(device, "basis functions", &basis.weights)?,
+                TableWeights::Short => table(device, "basis functions", &short_weights(&basis.weights, short_scale))?,
+            },
+            tangents: match stored {
+                TableWeights::Float => table(device, "tangents of basis functions", &basis.tangents)?,
+                TableWeights::Short => table(device, "tangents of basis functions", &short_tangents(&basis.tangents))?,
+            },
+            short_scale,
         })
     }
 
@@ -56,6 +66,22 @@ impl BasisBuffers {
             &self.normals,
         ]
     }
+}
+
+/// A number from -1 to 1 as `unpackSnorm2x16` reads it: rounded away from 0 on both sides of it.
+fn short(number: f32) -> u32 {
+    const MOST: f32 = 32767.0;
+    u32::from((number.clamp(-1.0, 1.0) * MOST).round() as i16 as u16)
+}
+
+/// Two weights a word.
+fn short_weights(weights: &[f32], scale: f32) -> Vec<u32> {
+    let word = |pair: &[f32]| pair.iter().rev().fold(0, |word, weight| word << 16 | short(weight / scale));
+    weights.chunks(2).map(word).collect()
+}
+
+fn short_tangents(tangents: &[[f32; 2]]) -> Vec<u32> {
+    tangents.iter().map(|[a, b]| short(*a) | short(*b) << 16).collect()
 }
 
 /// OPEN_RING of `glsl/table_normals.comp`.
@@ -184,5 +210,22 @@ impl VertexNormals {
             };
             encoder.compute(&self.limits, &push, count);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn short_weights_are_symmetric_and_nearest() {
+        for i in 0..=1000 {
+            let weight = i as f32 * 1e-3;
+            let read = |word: u32| f32::from(word as u16 as i16) / 32767.0;
+            assert_eq!(read(short(weight)), -read(short(-weight)));
+            assert!((read(short(weight)) - weight).abs() <= 0.5001 / 32767.0);
+        }
+        assert_eq!(short_weights(&[1.0, -1.0, 0.5], 1.0), [0x8001_7FFF, 0x4000]);
+        assert_eq!(short_weights(&[1.25], 1.25), [0x7FFF]);
     }
 }

@@ -4,7 +4,7 @@
 use anyhow::Result;
 use planish_gpu::Device;
 use planish_render::density::isolation_level;
-use planish_render::{SurfaceMethod, TableNormals};
+use planish_render::{SurfaceMethod, TableNormals, TableWeights};
 use planish_subdiv::scheme::Scheme;
 use planish_subdiv::tables::Tables;
 use serde::Serialize;
@@ -21,6 +21,7 @@ const TESS_FACTORS: [f32; 3] = [4.0, 16.0, 32.0];
 fn methods(is_of_triangles: bool) -> Vec<(&'static str, Setting)> {
     let setting = |method| Setting { method, is_culled: false, ..Setting::default() };
     let table = |scheme, table_normals| Setting { scheme, table_normals, ..setting(SurfaceMethod::Table) };
+    let short = |setting| Setting { table_weights: TableWeights::Short, ..setting };
     let shading = TableNormals::Subdivision(1);
     let mut methods = vec![("flat", setting(SurfaceMethod::Flat)), ("phong", setting(SurfaceMethod::Phong))];
     if is_of_triangles {
@@ -28,12 +29,14 @@ fn methods(is_of_triangles: bool) -> Vec<(&'static str, Setting)> {
             ("pn", setting(SurfaceMethod::Pn)),
             ("table loop", table(Scheme::Loop, TableNormals::Tangents)),
             ("table loop, Subdivision Shading", table(Scheme::Loop, shading)),
+            ("table loop, 16 bits", short(table(Scheme::Loop, TableNormals::Tangents))),
             ("table butterfly", table(Scheme::Butterfly, TableNormals::Tangents)),
         ]);
     }
     methods.extend([
         ("table catmull-clark", table(Scheme::CatmullClark, TableNormals::Tangents)),
         ("table catmull-clark, Subdivision Shading", table(Scheme::CatmullClark, shading)),
+        ("table catmull-clark, 16 bits", short(table(Scheme::CatmullClark, TableNormals::Tangents))),
         ("fas", setting(SurfaceMethod::Fas)),
         ("dfas", setting(SurfaceMethod::Dfas)),
     ]);
@@ -87,18 +90,17 @@ pub fn run(bench: &Bench, device: &Device, cage: &Cage) -> Result<Vec<GridRow>> 
 }
 
 /// Bytes that are read for a point inside a face, in the mean over the faces.
-pub fn bytes_a_point(tables: &Tables, normals: TableNormals) -> f64 {
+pub fn bytes_a_point(tables: &Tables, normals: TableNormals, weights: TableWeights) -> f64 {
     /// An index and a point; and a normal of it.
     const POINT: u32 = 4 + 12;
     const NORMAL: u32 = 12;
-    const WEIGHT: u32 = 4;
-    const TANGENTS: u32 = 8;
+    let weight = if weights == TableWeights::Short { 2 } else { 4 };
     let basis = &tables.basis;
     let of_control = match normals {
         _ if basis.weights.is_empty() => POINT + NORMAL,
-        TableNormals::Tangents => POINT + WEIGHT + TANGENTS,
-        TableNormals::Subdivision(_) => POINT + WEIGHT + NORMAL,
-        TableNormals::Geometric => POINT + WEIGHT,
+        TableNormals::Tangents => POINT + 3 * weight,
+        TableNormals::Subdivision(_) => POINT + weight + NORMAL,
+        TableNormals::Geometric => POINT + weight,
     };
     let controls: u64 = basis.patches.iter().map(|patch| u64::from(patch.control_count)).sum();
     f64::from(of_control) * controls as f64 / (basis.patches.len().max(1) as f64)

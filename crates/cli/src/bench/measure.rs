@@ -3,7 +3,7 @@
 use anyhow::Result;
 use planish_gpu::{Device, SubmitReport};
 use planish_render::{
-    Density, EndCap, FrameNeeds, GregoryPoints, Layers, SurfaceDesc, SurfaceMethod, TableNormals, View,
+    Density, EndCap, FrameNeeds, GregoryPoints, Layers, SurfaceDesc, SurfaceMethod, TableNormals, TableWeights, View,
 };
 use planish_subdiv::refine::CreasePatches;
 use planish_subdiv::scheme::Scheme;
@@ -117,6 +117,7 @@ impl<'a> Timed<'a> {
                 gregory_points,
                 scheme: setting.scheme,
                 table_normals: setting.table_normals,
+                table_weights: setting.table_weights,
             },
             options: frame_options(method, Density::Tess(tess_factor), false),
         };
@@ -149,7 +150,7 @@ impl<'a> Timed<'a> {
             preprocess_ms: times.topology + times.tables,
             tessellation: self.tessellation,
             gregory_fetched_points: fetched_points(surface.tables()),
-            grid_bytes: bytes_a_point(surface.tables(), surface.desc().table_normals),
+            grid_bytes: bytes_a_point(surface.tables(), surface.desc().table_normals, surface.desc().table_weights),
             ..medians(surface.tables().last_level, &self.frames)
         }
     }
@@ -166,6 +167,7 @@ pub struct Setting {
     pub gregory_points: GregoryPoints,
     pub scheme: Scheme,
     pub table_normals: TableNormals,
+    pub table_weights: TableWeights,
     /// What cannot be seen is left out, unless that is not wanted.
     pub is_culled: bool,
 }
@@ -181,6 +183,7 @@ impl Default for Setting {
             gregory_points: GregoryPoints::default(),
             scheme: Scheme::default(),
             table_normals: TableNormals::default(),
+            table_weights: TableWeights::default(),
             is_culled: true,
         }
     }

@@ -3,7 +3,7 @@
 
 use anyhow::{Result, bail};
 use planish_gpu::Device;
-use planish_render::{Density, EndCap, GregoryPoints, Layers, SurfaceMethod, TableNormals, View};
+use planish_render::{Density, EndCap, GregoryPoints, Layers, SurfaceMethod, TableNormals, TableWeights, View};
 use planish_scene::Camera;
 use planish_subdiv::refine::CreasePatches;
 use planish_subdiv::scheme::Scheme;
@@ -106,6 +106,7 @@ impl Method {
         let setting = PlanSetting {
             scheme: Scheme::CatmullClark,
             table_normals: TableNormals::Tangents,
+            table_weights: TableWeights::Float,
             method,
             max_level: arguments.max_level,
             crease_patches: CreasePatches::default(),
