@@ -180,6 +180,14 @@ vec3 next_point(SceneTables scene, TablePatch face, uvec2 at, uint most)
     return next_table_row(scene, patch_range(face), patch_row(at, most, is_table_triangle(face.flags)));
 }
 
+// Colours that are linear in a triangle.
+vec3 triangle_color(SceneTables scene, Object object, uint ptex_face, vec2 uv)
+{
+    uvec4 slots = corner_slots(scene, object, ptex_face) + object.first_mesh_slot;
+    return (1.0 - uv.x - uv.y) * scene.v.slot_colors.v[slots.x] + uv.x * scene.v.slot_colors.v[slots.y]
+        + uv.y * scene.v.slot_colors.v[slots.z];
+}
+
 // Parameters on the Ptex face.
 vec2 table_uv(TablePatch face, vec2 uv, uint steps)
 {
@@ -224,7 +232,7 @@ void main()
 #if defined(COLORS) || defined(SHADING) || defined(DUMP)
     if (COLORED) {
         for (bool is_open = (object.flags & OBJECT_VARYING_COLORS) != 0u; is_open; is_open = false) {
-            put_color(varying_color(scene, object, face.ptex_face, uv));
+            put_color(is_triangle ? triangle_color(scene, object, face.ptex_face, uv) : varying_color(scene, object, face.ptex_face, uv));
         }
     }
 #endif

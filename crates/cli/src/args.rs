@@ -182,6 +182,9 @@ pub struct InfoArguments {
     pub surface: SurfaceArguments,
     #[command(flatten)]
     pub view: ViewArguments,
+    /// Tell how large the tables of method table are for any cage, of valences 3 to 18, too
+    #[arg(long)]
+    pub fixed_set: bool,
     /// Refine so many times and print the median times
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = repeat_parser())]
     pub repeat: u32,

@@ -307,6 +307,10 @@ impl Session {
         }
         check_gregory(cage, &plan.desc).with_context(named)?;
         check_table(cage, plan).with_context(named)?;
+        if cage.has_uv() && !plan.desc.has_tex_coords() {
+            console
+                .warn(format_args!("{}: texture coordinates are those of Catmull-Clark's scheme: left out", named()));
+        }
         check_motion(cage, plan).with_context(named)?;
         let made = preprocess(&cage.meshes(), &plan.desc).with_context(named)?;
         let mut surface = Surface::new(device, &cage.meshes(), &plan.objects, plan.desc, made).with_context(named)?;

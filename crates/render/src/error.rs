@@ -12,6 +12,11 @@ pub enum Error {
     /// The device failed.
     #[error(transparent)]
     Gpu(#[from] planish_gpu::Error),
+    /// Colours that follow from points of several levels.
+    #[error(
+        "tables and substitutes have no colours that are subdivided as positions are: expected `t colorinterpolation`, bilinear ones, or none"
+    )]
+    SubdividedColors,
     /// A face that a substitute of subdivision surfaces has no patch for.
     #[error("face {face} (from 0) has {sides} sides: method {method} expects {accepted}")]
     SubstituteFace {

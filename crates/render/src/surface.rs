@@ -56,6 +56,11 @@ impl SurfaceDesc {
         self.method.is_one_patch_a_face() || is_capped
     }
 
+    /// Whether faces are those of Catmull-Clark's scheme, which texture coordinates are subdivided by.
+    pub fn has_tex_coords(&self) -> bool {
+        self.scheme == Scheme::CatmullClark && !self.method.is_substitute()
+    }
+
     /// Whether normals are made of those of vertices.
     pub fn has_vertex_normals(&self) -> bool {
         self.basis_options().is_some_and(|options| options.ring_level.is_some())
@@ -160,6 +165,9 @@ pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preproc
         ignores_channels: !desc.displaced,
     };
     refuse_rival(desc, desc.displaced, "displacement map")?;
+    if desc.method.is_grid() && meshes.iter().any(|mesh| has_vertex_colors(mesh)) {
+        return Err(Error::SubdividedColors);
+    }
     refuse_rival(
         desc,
         meshes.iter().any(|mesh| has_vertex_colors(mesh)),
@@ -347,8 +355,8 @@ impl Surface {
 
     /// Gives the meshes, which have these cages, their texture coordinates where nothing is displaced. Frames must be recorded anew then.
     pub fn set_tex_coords(&mut self, device: &Device, meshes: &[&ControlMesh]) -> Result<(), Error> {
-        if self.desc.displaced {
-            // They are part of the tables.
+        // They are part of the tables; or other schemes' faces are not those that they lie on.
+        if self.desc.displaced || !self.desc.has_tex_coords() {
             return Ok(());
         }
         self.tex_coords = TexCoordBuffers::of_tree(device, &tex_tree(meshes, &self.meshes)?)?;

@@ -9,8 +9,10 @@
 //! | `limit` | positions and tangents in the limit |
 //! | `grid` | the table of a configuration |
 //! | `build` | the tables of a cage |
+//! | `fixed` | how large the paper's own set is |
 
 mod build;
+mod fixed;
 mod grid;
 mod limit;
 pub(crate) mod poly;
@@ -18,3 +20,4 @@ mod step;
 mod walk;
 
 pub use build::{BasisOptions, MAX_TABLE_LEVEL, MAX_TABLE_STEPS};
+pub use fixed::{FIXED_VALENCES, TableSet, fixed_set};
