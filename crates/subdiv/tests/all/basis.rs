@@ -91,12 +91,6 @@ fn options(scheme: Scheme) -> BasisOptions {
     BasisOptions { scheme, steps: 1, level: LEVEL, ring_level: None, has_weights: true }
 }
 
-fn tables(mesh: &ControlMesh, scheme: Scheme) -> (Tables, Vec<[f64; 3]>) {
-    let tables = Tables::of_basis(mesh, &options(scheme)).expect("a cage of the scheme's");
-    let points = points(&mesh.positions, &tables);
-    (tables, points)
-}
-
 fn size(mesh: &ControlMesh) -> f64 {
     mesh.positions.iter().flatten().fold(0.0, |most, c| f64::from(c.abs()).max(most))
 }
