@@ -21,13 +21,6 @@ precise vec3 curve_position(vec3 p[4], vec4 n)
     return result;
 }
 
-// Where all terms of a sum are 0 its sign depends on what was added: not any more.
-precise vec3 without_sign_of_zero(vec3 a)
-{
-    precise vec3 result = a + 0.0;
-    return result;
-}
-
 // The control points around an edge of another patch; the others have no weight there.
 void border_points(BorderPoint border, inout vec3 p[16])
 {

@@ -92,6 +92,13 @@ precise vec3 unit_vector(vec3 a)
     return result;
 }
 
+// Where all terms of a sum are 0 its sign depends on what was added: not any more.
+precise vec3 without_sign_of_zero(vec3 a)
+{
+    precise vec3 result = a + 0.0;
+    return result;
+}
+
 // A unit vector along a x b, or 0 where they span no plane.
 precise vec3 unit_normal(vec3 a, vec3 b)
 {

@@ -134,7 +134,8 @@ const uint DRAW_GREGORY = 4;
 const uint DRAW_GREGORY_CUT = 5;
 const uint DRAW_TRIANGLE = 6; // thirds of Gregory triangles
 const uint DRAW_TRIANGLE_CUT = 7;
-const uint DRAW_COUNT = 8;
+const uint DRAW_TABLE = 8;    // faces whose points are rows of a table
+const uint DRAW_COUNT = 9;
 
 // What a frame drew and computed: patches by level, of each kind.
 struct FrameCounts {
@@ -143,6 +144,7 @@ struct FrameCounts {
     uint filling[LEVEL_COUNT];
     uint gregory[LEVEL_COUNT];  // quads
     uint triangle[LEVEL_COUNT];
+    uint table[LEVEL_COUNT];
     uint truncated;
     uint density_bits; // the largest density, as its bits
 };
@@ -188,6 +190,14 @@ struct SceneData {
     GregoryStencils stencils;   // of Gregory patches
     RingPoints stencil_points;
     Weights stencil_weights;
+    TablePatches table_patches; // of the method `table` and its rivals; these eight are empty for others
+    Points table_normals;       // of the points of all levels, where surfaces are shaded by them
+    TableEdges table_edges;
+    Indices table_controls;
+    Weights table_weights;
+    TableTangents table_tangents;
+    ShortWeights short_weights;  // instead of both, where they have 16 bits
+    ShortWeights short_tangents;
     PtexFaces ptex_faces;
     Indices neighbour_first; // slot to its first in `neighbours`
     Indices neighbours;
@@ -232,6 +242,9 @@ struct SceneData {
     uint first_active[LEVEL_COUNT];
     uint mark_group_count;
     uint first_limit_mark;
+    uint table_level;        // 2^this segments a side of a table's patches
+    uint table_steps;        // and they are faces of the cage split so often
+    float short_scale;       // of weights of 16 bits: what 1 stands for
     uvec2 materials;         // address of the MaterialTables (materials.glsl), for holes in them; 0 where nothing has any
 };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer SceneTables { SceneData v; };

@@ -13,6 +13,7 @@ const uint KIND_TRANSITION = 1;
 const uint KIND_FILLING = 2;
 const uint KIND_GREGORY_QUAD = 3;
 const uint KIND_GREGORY_TRIANGLE = 4;
+const uint KIND_TABLE = 5;
 // Shown, not dumped.
 const uint KIND_CREASE = 6;
 const uint KIND_BOUNDARY = 7;

@@ -137,6 +137,28 @@ struct FillingQuad {
     PatchInfo info;
 };
 
+// A face of the cage after one or two steps of subdivision, whose points are rows of a table (Hollaender and Boubekeur 2010): of a
+// grid of points, `control_count` weights each, of these controls. Tangents lie as the weights do. Or a face of the cage itself, of a
+// substitute, whose controls are its corners.
+struct TablePatch {
+    uint corners[4];    // limit points; of a triangle the last is the first
+    uint edges[4];      // edge << 1 | it runs the other way; the first from corner 0 to 1
+    uint first_control;
+    uint control_count;
+    uint first_weight;
+    uint ptex_face;
+    uint corner_uvs;    // parameters of the corners on the Ptex face, in 2^-steps: 3 bits for u and 3 for v each
+    uint flags;         // bits 0-3 edges, 4-7 corners, whose normal is the patch's own; TABLE_TRIANGLE
+};
+const uint TABLE_TRIANGLE = 256;
+
+// An edge between such faces: a row of points from one end to the other that both have.
+struct TableEdge {
+    uint first_control;
+    uint control_count;
+    uint first_weight;
+};
+
 struct LimitPoint {
     vec3 position;
     vec3 normal;
@@ -188,6 +210,11 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Irr
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer GregoryFaces { GregoryFace v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer GregoryStencils { GregoryStencil v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RingPoints { uvec3 v[]; }; // point, column, and a mask of the rows with a weight
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TablePatches { TablePatch v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TableEdges { TableEdge v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TableTangents { vec2 v[]; };
+// Two numbers of 16 bits a word, from -1 to 1 in steps of 1/32767: of weights one after the other, of tangents those of one point.
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer ShortWeights { uint v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Spokes { Spoke v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RivalSpokes { RivalSpoke v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SpokeRanges { uvec2 v[]; };

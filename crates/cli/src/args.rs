@@ -11,12 +11,14 @@ use planish_film::{Compression, ToneMap};
 use planish_gpu::DeviceOptions;
 use planish_render::{Density, SurfaceMethod};
 use planish_scene::LoadOptions;
+use planish_subdiv::scheme::Scheme;
 
 use crate::aov::AovList;
 use crate::frames::FrameRange;
 use crate::names::{
     CreasePatchesName, DisplacementKindName, DisplacementLayoutName, EndCapName, FilterName, GregoryNormalsName,
-    GregoryPointsName, LodName, MethodName, MetricName, SchemeName, SpacingName, ViewName, name_of,
+    GregoryPointsName, LodName, MethodName, MetricName, SchemeName, SpacingName, TableNormalsName, TableWeightsName,
+    ViewName, name_of,
 };
 use crate::values::{self, FrameRate, MAX_LEVEL};
 
@@ -180,6 +182,9 @@ pub struct InfoArguments {
     pub surface: SurfaceArguments,
     #[command(flatten)]
     pub view: ViewArguments,
+    /// Tell how large the tables of method table are for any cage, of valences 3 to 18, too
+    #[arg(long)]
+    pub fixed_set: bool,
     /// Refine so many times and print the median times
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = repeat_parser())]
     pub repeat: u32,
@@ -227,6 +232,9 @@ pub struct BenchArguments {
     /// Time fas, dfas, both implementations of gregory and, on cages that they have patches for, acc and pm in turns instead, with nothing culled, at tess factors 6, 10, 17 and 25 or those given
     #[arg(long, conflicts_with_all = ["levels", "cpu", "path", "cameras", "creases", "seams"])]
     pub gregory: bool,
+    /// Time method table with flat, phong and pn, fas and dfas in turns instead, with nothing culled, at tess factors 4, 16 and 32 or those given
+    #[arg(long, conflicts_with_all = ["levels", "cpu", "path", "cameras", "creases", "seams", "gregory"])]
+    pub tables: bool,
     /// Time the building of tables for these levels instead, on one thread of the CPU; needs no device
     #[arg(long)]
     pub cpu: bool,
@@ -322,36 +330,54 @@ pub struct SurfaceArguments {
     /// Normals of Gregory patches: of their Bezier form, exact along edges, or of the rational patch
     #[arg(long, value_enum, default_value_t = GregoryNormalsName::Approximate)]
     pub gregory_normals: GregoryNormalsName,
+    /// Where normals of method table come from
+    #[arg(long, value_enum, default_value_t = TableNormalsName::Tangent)]
+    pub table_normals: TableNormalsName,
+    /// How weights of method table are stored
+    #[arg(long, value_enum, default_value_t = TableWeightsName::Float)]
+    pub table_weights: TableWeightsName,
     /// Trade bitwise equal seams for speed
     #[arg(long)]
     pub no_watertight: bool,
 }
 
 impl SurfaceArguments {
-    /// The method; refused where it does not exist yet.
-    pub fn method(&self) -> Result<SurfaceMethod> {
+    /// The method.
+    pub fn method(&self) -> SurfaceMethod {
         match self.method {
-            MethodName::Fas => Ok(SurfaceMethod::Fas),
-            MethodName::Dfas => Ok(SurfaceMethod::Dfas),
-            MethodName::Gregory => Ok(SurfaceMethod::Gregory),
-            MethodName::Acc => Ok(SurfaceMethod::Acc),
-            MethodName::Pm => Ok(SurfaceMethod::Pm),
-            MethodName::Uniform => Ok(SurfaceMethod::Uniform),
-            other @ MethodName::Table => {
-                bail!(
-                    "method {} is not available yet (available: fas, dfas, gregory, acc, pm, uniform)",
-                    name_of(other)
-                )
-            }
+            MethodName::Fas => SurfaceMethod::Fas,
+            MethodName::Dfas => SurfaceMethod::Dfas,
+            MethodName::Gregory => SurfaceMethod::Gregory,
+            MethodName::Acc => SurfaceMethod::Acc,
+            MethodName::Pm => SurfaceMethod::Pm,
+            MethodName::Uniform => SurfaceMethod::Uniform,
+            MethodName::Table => SurfaceMethod::Table,
+            MethodName::Flat => SurfaceMethod::Flat,
+            MethodName::Phong => SurfaceMethod::Phong,
+            MethodName::Pn => SurfaceMethod::Pn,
         }
     }
 
-    /// Refuses what does not exist yet.
-    pub fn check_available(&self) -> Result<()> {
-        match self.scheme {
-            None | Some(SchemeName::CatmullClark) => Ok(()),
-            Some(other) => bail!("scheme {} is not available yet (available: catmull-clark)", name_of(other)),
+    /// The scheme; refused where it does not exist yet, or the method does not know it.
+    pub fn scheme(&self) -> Result<Scheme> {
+        let scheme = match self.scheme {
+            None | Some(SchemeName::CatmullClark) => return Ok(Scheme::CatmullClark),
+            Some(SchemeName::Loop) => Scheme::Loop,
+            Some(SchemeName::LoopStam) => Scheme::LoopStam,
+            Some(SchemeName::Butterfly) => Scheme::Butterfly,
+            Some(other @ SchemeName::Bilinear) => bail!(
+                "scheme {} is not available yet (available: catmull-clark, loop, loop-stam, butterfly)",
+                name_of(other)
+            ),
+        };
+        if self.method() != SurfaceMethod::Table {
+            bail!(
+                "scheme {} is evaluated by table: found --method {}, expected --method table",
+                scheme.name(),
+                name_of(self.method)
+            );
         }
+        Ok(scheme)
     }
 
     /// How finely to tessellate.
@@ -544,7 +570,7 @@ mod tests {
     #[test]
     fn the_defaults_are_the_interface_s() {
         let arguments = render("");
-        assert_eq!(arguments.surface.method().unwrap(), SurfaceMethod::Dfas);
+        assert_eq!(arguments.surface.method(), SurfaceMethod::Dfas);
         assert_eq!(arguments.surface.density(), Density::EdgePixels(4.0));
         assert_eq!((arguments.surface.max_level(), arguments.view.size, arguments.samples), (10, [1280, 720], 1));
         assert_eq!(Spacing::from(arguments.surface.spacing), Spacing::FractionalOdd);
@@ -564,12 +590,19 @@ mod tests {
     }
 
     #[test]
-    fn methods_and_schemes_to_come_are_refused_when_asked_for() {
-        let message = render("--method table").surface.method().unwrap_err().to_string();
-        assert_eq!(message, "method table is not available yet (available: fas, dfas, gregory, acc, pm, uniform)");
-        let message = render("--scheme loop").surface.check_available().unwrap_err().to_string();
-        assert_eq!(message, "scheme loop is not available yet (available: catmull-clark)");
-        assert!(render("--scheme catmull-clark").surface.check_available().is_ok());
+    fn schemes_are_refused_where_they_are_not_known() {
+        let scheme = |line: &str| render(line).surface.scheme();
+        let message = |line: &str| scheme(line).unwrap_err().to_string();
+        assert_eq!(
+            message("--scheme bilinear"),
+            "scheme bilinear is not available yet (available: catmull-clark, loop, loop-stam, butterfly)"
+        );
+        assert_eq!(
+            message("--scheme loop"),
+            "scheme loop is evaluated by table: found --method dfas, expected --method table"
+        );
+        assert_eq!(scheme("--scheme loop --method table").unwrap(), Scheme::Loop);
+        assert_eq!(scheme("--scheme catmull-clark").unwrap(), Scheme::CatmullClark);
     }
 
     #[test]

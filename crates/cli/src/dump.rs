@@ -1,5 +1,6 @@
 //! `planish dump`: the tessellated limit surface to PLY.
 
+use std::borrow::Cow;
 use std::path::Path;
 use std::sync::mpsc::sync_channel;
 use std::time::Instant;
@@ -117,8 +118,9 @@ impl Dump<'_> {
         let (mut triangles, mut sink_ms) = (0, 0.0);
         self.passes.capture(&self.session.device, &self.session.surface, |vertices| {
             let start = Instant::now();
+            let vertices = self.kept(vertices);
             triangles += vertices.len() as u64 / 3;
-            let taken = sink(vertices);
+            let taken = sink(&vertices);
             sink_ms += milliseconds(start);
             taken
         })?;
@@ -126,10 +128,32 @@ impl Dump<'_> {
         Ok(Done { drawn, triangles })
     }
 
+    /// What a part of a capture has to show: all of it, but for the triangles that lie folded on a side of a patch's grid.
+    fn kept<'v>(&self, vertices: &'v [CapturedVertex]) -> Cow<'v, [CapturedVertex]> {
+        if !self.session.surface.desc().method.is_grid() {
+            return Cow::Borrowed(vertices);
+        }
+        vertices.chunks_exact(3).filter(|triangle| has_three_corners(triangle)).flatten().copied().collect()
+    }
+
+    /// Vertices of the frame whose lists were made.
+    fn vertex_count(&self) -> Result<u64> {
+        if !self.session.surface.desc().method.is_grid() {
+            return Ok(3 * planish_render::listed_triangle_count(&self.session.device, &self.session.surface)?);
+        }
+        // How many are folded depends on the factors of edges: captured once more to count them.
+        let mut count = 0;
+        self.passes.capture(&self.session.device, &self.session.surface, |vertices| {
+            count += self.kept(vertices).len() as u64;
+            anyhow::Ok(())
+        })?;
+        Ok(count)
+    }
+
     /// Writes a frame while it is captured: a dump of any size needs the memory of a few parts.
     fn write(&mut self, path: &Path) -> Result<Done> {
         let drawn = self.session.make_lists(&self.cages)?;
-        let vertex_count = 3 * planish_render::listed_triangle_count(&self.session.device, &self.session.surface)?;
+        let vertex_count = self.vertex_count()?;
         let (sender, receiver) = sync_channel::<Vec<DumpVertex>>(QUEUED_PARTS);
         let properties = self.properties;
         std::thread::scope(|scope| {
@@ -147,6 +171,13 @@ impl Dump<'_> {
             }
         })
     }
+}
+
+/// Whether no two of a triangle's vertices are one point.
+fn has_three_corners(triangle: &[CapturedVertex]) -> bool {
+    let place = |i: usize| (triangle[i].position.map(f32::to_bits), triangle[i].uv.map(f32::to_bits));
+    let [a, b, c] = [0, 1, 2].map(place);
+    a != b && b != c && c != a
 }
 
 fn dump_vertex(vertex: &CapturedVertex) -> DumpVertex {

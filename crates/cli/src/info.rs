@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use anyhow::{Context, Result};
 use planish_render::spokes::{FACE_BYTES, RIVAL_SPOKE_BYTES, SPOKE_BYTES, STENCIL_BYTES};
-use planish_render::{Preprocessed, SurfaceDesc, SurfaceMethod, preprocess};
+use planish_render::{Preprocessed, SurfaceDesc, SurfaceMethod, TableWeights, preprocess};
 use planish_subdiv::edits::deepest_level;
 use planish_subdiv::mesh::{
     BoundaryInterpolation, Creasing, FaceVaryingInterpolation, TriangleSubdivision, VertexInterpolation,
 };
 use planish_subdiv::selection::{PatchCounts, deepest_cut};
-use planish_subdiv::tables::{GregoryKind, GregoryTable, IndexLists, Tables};
+use planish_subdiv::tables::{GregoryKind, GregoryTable, IndexLists, TableSet, Tables, fixed_set};
 use planish_subdiv::{ControlMesh, patch::PatchInfo};
 use serde::Serialize;
 
@@ -35,7 +35,7 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<()> {
         tables.push(made.times.tables);
     }
     (made.times.topology, made.times.tables) = (median(topology), median(tables));
-    let info = Info::new(&cage, &desc, &made);
+    let info = Info::new(&cage, &desc, &made, arguments.fixed_set);
     print_output(&if arguments.json { serde_json::to_string_pretty(&info)? + "\n" } else { info.to_text() })
 }
 
@@ -44,18 +44,20 @@ fn surface_desc(arguments: &InfoArguments, cage: &Cage) -> Result<SurfaceDesc> {
     let surface = &arguments.surface;
     match surface.asked_max_level {
         Some(level) if surface.tess.is_none() && surface.edge_pixels.is_none() => {
-            surface.check_available()?;
             let crease_patches = surface.crease_patches.into();
             let gregory_points = surface.gregory.into();
-            let method = surface.method()?;
+            let method = surface.method();
             let desc = SurfaceDesc {
                 method,
                 // One patch a face of the cage: nothing is refined.
-                level: if method.is_one_patch_a_face() { 0 } else { level },
+                level: if method.is_one_patch_a_face() || method.is_grid() { 0 } else { level },
                 crease_patches,
                 end_cap: surface.end_cap.into(),
                 displaced: false,
                 gregory_points,
+                scheme: surface.scheme()?,
+                table_normals: surface.table_normals.into(),
+                table_weights: surface.table_weights.into(),
             };
             check_gregory(cage, &desc)?;
             Ok(desc)
@@ -109,7 +111,32 @@ struct RefinementInfo {
     /// Tables of Gregory stencils, and patches that have one; if they were asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     gregory_stencils: Option<StencilInfo>,
+    /// Basis function tables, of method table.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    basis: Option<BasisInfo>,
     levels: Vec<LevelInfo>,
+}
+
+/// What basis function tables there are.
+#[derive(Debug, Serialize)]
+struct BasisInfo {
+    /// Segments a side of a face.
+    segments: u32,
+    /// Distinct tables of faces, and the bytes of their weights of positions as floats.
+    configurations: usize,
+    weight_bytes: usize,
+    /// Of faces, edges between them and tangents too, as they are stored.
+    bytes: u64,
+    /// The paper's set for any cage, if it was asked for: one extraordinary vertex of valence 3 to 18, inside and on boundaries.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fixed_set: Option<FixedSetInfo>,
+}
+
+/// The paper's fixed set of tables.
+#[derive(Debug, Serialize)]
+struct FixedSetInfo {
+    configurations: usize,
+    weight_bytes: usize,
 }
 
 /// What stencils of Gregory patches there are.
@@ -132,19 +159,21 @@ struct LevelInfo {
     /// Gregory patches of 20 points, and triangles of 15.
     gregory_quad: u32,
     gregory_triangle: u32,
+    /// Faces that are evaluated by table.
+    table: u32,
 }
 
 impl Info {
-    fn new(cage: &Cage, desc: &SurfaceDesc, made: &Preprocessed) -> Self {
+    fn new(cage: &Cage, desc: &SurfaceDesc, made: &Preprocessed, wants_fixed_set: bool) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION"),
             scene: cage.path().display().to_string(),
-            scheme: "catmull-clark",
+            scheme: desc.scheme.name(),
             load_ms: cage.load_ms,
             graph: SceneInfo::new(cage.scene()),
             mesh: cage.facts.clone(),
             features: Features::new(&cage.meshes(), cage.has_uv()),
-            refinement: RefinementInfo::new(desc, made),
+            refinement: RefinementInfo::new(desc, made, wants_fixed_set),
         }
     }
 
@@ -253,7 +282,7 @@ impl Features {
 }
 
 impl RefinementInfo {
-    fn new(desc: &SurfaceDesc, made: &Preprocessed) -> Self {
+    fn new(desc: &SurfaceDesc, made: &Preprocessed, wants_fixed_set: bool) -> Self {
         let tables = &made.tables;
         let counts = patch_counts(desc, made);
         let levels = tables.levels.iter().enumerate().map(|(level, points)| {
@@ -265,6 +294,7 @@ impl RefinementInfo {
                 quad: counts.filling,
                 gregory_quad: counts.gregory,
                 gregory_triangle: counts.triangle,
+                table: counts.table,
             }
         });
         let point_bytes = size_of::<[f32; 3]>() as u64;
@@ -277,6 +307,7 @@ impl RefinementInfo {
                 ("points", point_bytes * u64::from(tables.point_count())),
             ]),
             gregory_stencils: StencilInfo::new(&tables.gregory),
+            basis: BasisInfo::new(desc, tables, wants_fixed_set),
             levels: levels.collect(),
         }
     }
@@ -291,9 +322,24 @@ impl RefinementInfo {
             let stencils = format!("{connectivities} connectivities of {faces} faces, {}", bytes_text(*bytes));
             line("  stencils", format!("{stencils}; {faces_of_spokes} faces in two stages"));
         }
+        if let Some(basis) = &self.basis {
+            let own =
+                format!("{} configurations of faces, {}", basis.configurations, bytes_text(basis.weight_bytes as u64));
+            line("  tables", format!("{own} of weights; with edges and tangents {}", bytes_text(basis.bytes)));
+            if let Some(fixed) = &basis.fixed_set {
+                let (count, bytes) = (fixed.configurations, bytes_text(fixed.weight_bytes as u64));
+                line(
+                    "  fixed set",
+                    format!("{count} configurations, valences 3 to 18 inside and on boundaries, {bytes}"),
+                );
+            }
+        }
     }
 
     fn levels_table(&self) -> TextTable {
+        if self.basis.is_some() {
+            return self.grids_table();
+        }
         let columns = ["level", "points", "regular", "transition", "quad", "Gregory quad", "Gregory triangle"];
         // Methods without Gregory patches have no columns for them.
         let count = if self.levels.iter().any(|level| level.gregory_quad + level.gregory_triangle > 0) {
@@ -322,6 +368,43 @@ impl RefinementInfo {
     }
 }
 
+impl RefinementInfo {
+    fn grids_table(&self) -> TextTable {
+        let mut table = TextTable::new(&["level", "points", "table"]);
+        for (level, info) in self.levels.iter().enumerate() {
+            table.push(vec![level.to_string(), info.points.to_string(), info.table.to_string()]);
+        }
+        table
+    }
+}
+
+impl BasisInfo {
+    fn new(desc: &SurfaceDesc, tables: &Tables, wants_fixed_set: bool) -> Option<Self> {
+        let options = desc.basis_options().filter(|options| options.has_weights)?;
+        let own = TableSet::of(tables);
+        let fixed = if wants_fixed_set { fixed_set(options.scheme, options.level).ok() } else { None };
+        Some(Self {
+            segments: 1 << options.level,
+            configurations: own.configurations,
+            weight_bytes: own.bytes(),
+            bytes: basis_bytes(tables, desc.table_weights),
+            fixed_set: fixed.map(|set| FixedSetInfo { configurations: set.configurations, weight_bytes: set.bytes() }),
+        })
+    }
+}
+
+/// Bytes of basis function tables on a device.
+fn basis_bytes(tables: &Tables, stored: TableWeights) -> u64 {
+    /// TablePatch and TableEdge of the shaders.
+    const PATCH: usize = size_of::<[u32; 14]>();
+    const EDGE: usize = size_of::<[u32; 3]>();
+    let basis = &tables.basis;
+    let weights = size_of_val(basis.weights.as_slice()) + size_of_val(basis.tangents.as_slice());
+    let weights = if stored == TableWeights::Short { weights / 2 } else { weights };
+    let lists = basis.patches.len() * PATCH + basis.edges.len() * EDGE + size_of_val(basis.controls.as_slice());
+    (lists + weights) as u64
+}
+
 impl StencilInfo {
     fn new(table: &GregoryTable) -> Option<Self> {
         let stencils = &table.stencils;
@@ -339,6 +422,10 @@ impl StencilInfo {
 /// Patches of each level where every irregularity is isolated to the last one.
 fn patch_counts(desc: &SurfaceDesc, made: &Preprocessed) -> Vec<PatchCounts> {
     let mut counts = vec![PatchCounts::default(); made.tables.last_level as usize + 1];
+    if desc.method.is_grid() {
+        counts[made.tables.last_level as usize].table = made.tables.basis.patches.len() as u32;
+        return counts;
+    }
     if desc.method == SurfaceMethod::Uniform {
         counts[made.tables.last_level as usize].filling = made.tables.filling.len() as u32;
         return counts;
@@ -400,7 +487,7 @@ pub fn table_bytes(tables: &Tables) -> u64 {
         size_of_val(tables.ptex_faces.as_slice()),
         lists(&tables.stars) + lists(&tables.slots.neighbours) + lists(&tables.slots.rings),
     ];
-    bytes.iter().sum::<usize>() as u64 + gregory_bytes(&tables.gregory)
+    bytes.iter().sum::<usize>() as u64 + gregory_bytes(&tables.gregory) + basis_bytes(tables, TableWeights::Float)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Names on the command line for what the renderer offers.
 
 use clap::ValueEnum;
-use planish_render::{EndCap, GregoryPoints, Spacing, View};
+use planish_render::{EndCap, GregoryPoints, Spacing, TableNormals, TableWeights, View};
 use planish_scene::displacement::{DisplacementKind, DisplacementLayout};
 use planish_subdiv::refine::CreasePatches;
 
@@ -17,7 +17,14 @@ pub enum MethodName {
     Acc,
     /// Pm-patches, to compare with: closed meshes of quads
     Pm,
+    /// Basis function tables over the cage subdivided once: any scheme
     Table,
+    /// Faces of the cage as they are, to compare with: triangles and quads
+    Flat,
+    /// Phong tessellation, to compare with: triangles and quads
+    Phong,
+    /// Curved PN triangles, to compare with: triangles
+    Pn,
     Uniform,
 }
 
@@ -81,6 +88,51 @@ pub enum GregoryNormalsName {
     Exact,
 }
 
+/// Normals of surfaces by table, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TableNormalsName {
+    /// Tables of tangents: the limit surface's own
+    Tangent,
+    /// Subdivision Shading from the cage on
+    Subdivision0,
+    /// Subdivision Shading from the mesh after one step on
+    Subdivision1,
+    /// Subdivision Shading from the mesh after two steps on
+    Subdivision2,
+    /// Geometric normals of the mesh after one step, interpolated
+    Geometric,
+}
+
+impl From<TableNormalsName> for TableNormals {
+    fn from(name: TableNormalsName) -> Self {
+        match name {
+            TableNormalsName::Tangent => Self::Tangents,
+            TableNormalsName::Subdivision0 => Self::Subdivision(0),
+            TableNormalsName::Subdivision1 => Self::Subdivision(1),
+            TableNormalsName::Subdivision2 => Self::Subdivision(2),
+            TableNormalsName::Geometric => Self::Geometric,
+        }
+    }
+}
+
+/// How weights of tables are stored, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TableWeightsName {
+    /// 32-bit floats
+    Float,
+    /// 16 bits
+    Short,
+}
+
+impl From<TableWeightsName> for TableWeights {
+    fn from(name: TableWeightsName) -> Self {
+        match name {
+            TableWeightsName::Float => Self::Float,
+            TableWeightsName::Short => Self::Short,
+        }
+    }
+}
+
 /// How control points of Gregory patches are made, by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum GregoryPointsName {
@@ -111,8 +163,14 @@ pub enum MetricName {
 /// Subdivision schemes by name.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum SchemeName {
+    /// Faces of any number of sides
     CatmullClark,
+    /// Triangles; by method table
     Loop,
+    /// Triangles and quads (Stam and Loop 2003); by method table
+    LoopStam,
+    /// Triangles, interpolated (Modified Butterfly, Zorin et al. 1996); by method table
+    Butterfly,
     Bilinear,
 }
 

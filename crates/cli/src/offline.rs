@@ -8,12 +8,13 @@ use planish_gpu::{Calls, Device, Encoder, Recorded, SubmitReport};
 use planish_render::density::{MAX_UNCUT_DENSITY, isolation_level, largest_density};
 use planish_render::{
     Culling, Density, DrawOptions, DrawPasses, EndCap, FrameCamera, FrameNeeds, FrameOptions, FrameStages,
-    GregoryPoints, Layers, ObjectDesc, Selection, Spacing, Status, Surface, SurfaceDesc, SurfaceMethod, Targets, View,
-    preprocess,
+    GregoryPoints, Layers, ObjectDesc, Selection, Spacing, Status, Surface, SurfaceDesc, SurfaceMethod, TableNormals,
+    TableWeights, Targets, View, preprocess,
 };
 use planish_scene::{Camera, Lens, Pose};
 use planish_subdiv::ControlMesh;
 use planish_subdiv::refine::CreasePatches;
+use planish_subdiv::scheme::Scheme;
 
 use crate::args::{DeviceArguments, SurfaceArguments, ViewArguments};
 use crate::cage::{Cage, milliseconds};
@@ -22,11 +23,15 @@ use crate::frames::FrameRange;
 use crate::moment::{Moment, deform_surface};
 use crate::names::{GregoryNormalsName, LodName};
 use crate::shading::FrameParts;
+use crate::stats::method_name;
 use crate::values::FrameRate;
 
 /// What a plan is made for.
 pub struct PlanSetting {
     pub method: SurfaceMethod,
+    pub scheme: Scheme,
+    pub table_normals: TableNormals,
+    pub table_weights: TableWeights,
     /// No irregularity is isolated deeper.
     pub max_level: u32,
     pub crease_patches: CreasePatches,
@@ -96,10 +101,12 @@ impl Plan {
     }
 
     fn setting(surface: &SurfaceArguments, view: &ViewArguments) -> Result<PlanSetting> {
-        surface.check_available()?;
-        let method = surface.method()?;
+        let method = surface.method();
         Ok(PlanSetting {
             method,
+            scheme: surface.scheme()?,
+            table_normals: surface.table_normals.into(),
+            table_weights: surface.table_weights.into(),
             max_level: surface.max_level(),
             crease_patches: surface.crease_patches.into(),
             end_cap: surface.end_cap.into(),
@@ -136,7 +143,9 @@ impl Plan {
         }
         let (camera, objects) = first.expect("a frame at least");
         let is_gregory = setting.method.is_one_patch_a_face();
-        let level = if is_gregory { 0 } else { isolation_level(density, setting.max_level) };
+        // Tables are over the cage subdivided once.
+        let level =
+            if is_gregory || setting.method.is_grid() { 0 } else { isolation_level(density, setting.max_level) };
         // Stencils are over the cage: end caps lie deeper.
         let gregory_points =
             if setting.method == SurfaceMethod::Gregory { setting.gregory_points } else { GregoryPoints::TwoStage };
@@ -147,6 +156,9 @@ impl Plan {
             end_cap: setting.end_cap,
             displaced: cage.is_displaced(),
             gregory_points,
+            scheme: setting.scheme,
+            table_normals: setting.table_normals,
+            table_weights: setting.table_weights,
         };
         let needs = FrameNeeds {
             watertight: setting.watertight,
@@ -158,6 +170,8 @@ impl Plan {
             gregory_points,
             exact_normals: setting.exact_normals,
             colors: cage.has_colors(),
+            grids: desc.method.is_grid(),
+            vertex_normals: desc.has_vertex_normals(),
             deforms: cage.deforms(),
             placed: is_placed,
             ..frame_needs(setting.spacing, density, &objects)
@@ -185,6 +199,14 @@ impl Plan {
     }
 }
 
+/// Refuses what tables do not have.
+pub fn check_table(cage: &Cage, plan: &Plan) -> Result<()> {
+    if plan.desc.method.is_grid() && cage.is_displaced() {
+        bail!("method {} is not displaced: expected no displacement map", method_name(plan.desc.method));
+    }
+    Ok(())
+}
+
 /// Refuses what Gregory patches do not have, for surfaces that have some.
 pub fn check_gregory(cage: &Cage, desc: &SurfaceDesc) -> Result<()> {
     if !desc.has_gregory_patches() {
@@ -202,7 +224,12 @@ pub fn check_gregory(cage: &Cage, desc: &SurfaceDesc) -> Result<()> {
 /// Refuses what motion is not known of.
 fn check_motion(cage: &Cage, plan: &Plan) -> Result<()> {
     if plan.needs.moves && cage.deforms() && plan.desc.has_gregory_patches() {
-        bail!("motion of meshes that deform is not known on Gregory patches: expected method dfas, fas or uniform");
+        bail!(
+            "motion of meshes that deform is not known on Gregory patches: expected method dfas, fas, table or uniform"
+        );
+    }
+    if plan.needs.moves && cage.deforms() && plan.desc.method.is_substitute() {
+        bail!("motion of meshes that deform is not known on substitutes: expected method dfas, fas, table or uniform");
     }
     if plan.needs.moves && cage.displaces_what_deforms() {
         bail!("motion of meshes that deform is that of the limit surface: expected no displacement map");
@@ -279,6 +306,11 @@ impl Session {
             bail!("{}: method uniform draws the limit surface: expected no displacement map", named());
         }
         check_gregory(cage, &plan.desc).with_context(named)?;
+        check_table(cage, plan).with_context(named)?;
+        if cage.has_uv() && !plan.desc.has_tex_coords() {
+            console
+                .warn(format_args!("{}: texture coordinates are those of Catmull-Clark's scheme: left out", named()));
+        }
         check_motion(cage, plan).with_context(named)?;
         let made = preprocess(&cage.meshes(), &plan.desc).with_context(named)?;
         let mut surface = Surface::new(device, &cage.meshes(), &plan.objects, plan.desc, made).with_context(named)?;

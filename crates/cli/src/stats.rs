@@ -114,6 +114,8 @@ pub struct PatchStats {
     pub gregory_quad: u64,
     /// Gregory triangles, of 15.
     pub gregory_triangle: u64,
+    /// Faces that were evaluated by table.
+    pub table: u64,
     /// How many of the quads are as large as they are only because refinement had to end.
     pub truncated: u64,
 }
@@ -186,6 +188,7 @@ impl FrameStats {
                 quad: sum(|level| level.filling),
                 gregory_quad: sum(|level| level.gregory),
                 gregory_triangle: sum(|level| level.triangle),
+                table: sum(|level| level.table),
                 truncated: if has_gregory { 0 } else { u64::from(drawn.status.counts.truncated) },
             },
             subpatches: transition,
@@ -213,7 +216,7 @@ impl Stats {
             version: env!("CARGO_PKG_VERSION"),
             device: DeviceStats::new(&session.device),
             method: method_name(session.surface.desc().method),
-            scheme: "catmull-clark",
+            scheme: session.surface.desc().scheme.name(),
             scene: cage.path().display().to_string(),
             mesh: MeshStats {
                 vertices: cage.facts.vertices as u64,
@@ -249,6 +252,10 @@ pub fn method_name(method: SurfaceMethod) -> &'static str {
         SurfaceMethod::Acc => "acc",
         SurfaceMethod::Pm => "pm",
         SurfaceMethod::Uniform => "uniform",
+        SurfaceMethod::Table => "table",
+        SurfaceMethod::Flat => "flat",
+        SurfaceMethod::Phong => "phong",
+        SurfaceMethod::Pn => "pn",
     }
 }
 

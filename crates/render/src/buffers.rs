@@ -16,7 +16,8 @@ use crate::error::Error;
 use crate::lists::{Capacities, KIND_COUNT, LIST_COUNT, LIST_PHASES, Phases, sum_of};
 use crate::marks::Marks;
 use crate::objects::ObjectSizes;
-use crate::options::SurfaceMethod;
+use crate::options::{SurfaceMethod, TableWeights};
+use crate::table::BasisBuffers;
 use crate::upload::{array, mapped, table};
 
 /// What depends on connectivity alone.
@@ -48,10 +49,17 @@ pub(crate) struct TableBuffers {
     pub stars: [Buffer; 2],
     pub density_scales: Buffer,
     pub mark_groups: Buffer,
+    pub basis: BasisBuffers,
 }
 
 impl TableBuffers {
-    pub fn new(device: &Device, tables: &Tables, marks: &Marks, density_scales: &[f32]) -> Result<Self, Error> {
+    pub fn new(
+        device: &Device,
+        tables: &Tables,
+        marks: &Marks,
+        density_scales: &[f32],
+        table_weights: TableWeights,
+    ) -> Result<Self, Error> {
         let (stencils, limits) = (&tables.stencils, &tables.limits);
         let gregory_stencils = &tables.gregory.stencils;
         let needs_spokes = tables.gregory.needs_spokes();
@@ -92,6 +100,7 @@ impl TableBuffers {
             stars: lists(device, "stars", &star_marks)?,
             density_scales: table(device, "density scales", density_scales)?,
             mark_groups: table(device, "mark groups", &marks.groups)?,
+            basis: BasisBuffers::new(device, tables, table_weights)?,
         })
     }
 
@@ -123,6 +132,7 @@ impl TableBuffers {
             &self.mark_groups,
         ];
         all.extend(self.neighbours.iter().chain(&self.rings).chain(&self.stars));
+        all.extend(self.basis.all());
         all
     }
 }
@@ -234,7 +244,7 @@ impl ListBuffers {
     ) -> Result<Self, Error> {
         let row_counts: Vec<u32> = phases.rows.iter().map(|&[_, count]| count).collect();
         let mut heads = capacities.heads(&row_counts);
-        if method == SurfaceMethod::Uniform {
+        if method == SurfaceMethod::Uniform || method.is_grid() {
             // Every row is in use.
             for (head, &count) in heads[LIST_PHASES..].iter_mut().zip(&row_counts) {
                 let groups = planish_gpu::groups_for(count, crate::lists::CHUNK);

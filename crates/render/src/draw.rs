@@ -40,7 +40,7 @@ fn check_targets(device: &Device, layers: Layers) -> Result<(), Error> {
 }
 
 /// The pipelines that draw depth alone.
-fn depth_options(surface: &SurfaceDesc, needs: &FrameNeeds) -> PipelineOptions {
+pub(crate) fn depth_options(surface: &SurfaceDesc, needs: &FrameNeeds) -> PipelineOptions {
     PipelineOptions {
         method: surface.method,
         end_cap: surface.end_cap,
@@ -60,6 +60,8 @@ fn depth_options(surface: &SurfaceDesc, needs: &FrameNeeds) -> PipelineOptions {
         colors: false,
         moves: false,
         cutouts: needs.cutouts,
+        table_normals: surface.table_normals,
+        table_weights: surface.table_weights,
     }
 }
 

@@ -10,10 +10,11 @@ use planish_gpu::{
 };
 
 use crate::camera::FrameCamera;
+use crate::draw::depth_options;
 use crate::error::Error;
 use crate::frame::draw_push;
 use crate::lists::{PatchKind, draw_arguments};
-use crate::options::{FrameNeeds, GregoryPoints, SurfaceMethod, View};
+use crate::options::{FrameNeeds, SurfaceMethod};
 use crate::pipelines::{Output, PipelineOptions, pipelines};
 use crate::surface::{Surface, SurfaceDesc};
 
@@ -64,24 +65,11 @@ impl DumpPasses {
             return Err(Error::NoTransformFeedback { device: device.name().to_owned() });
         }
         let options = PipelineOptions {
-            method: surface.method,
-            end_cap: surface.end_cap,
-            spacing: needs.spacing,
             output: Output::Dump,
-            view: View::Shaded,
-            cull_back: false,
-            wire: false,
-            creases: surface.has_creased_patches(),
-            placed: needs.placed,
-            cuts: needs.cuts,
-            watertight: needs.watertight,
-            displaced: needs.displaced,
             tex_coords: needs.tex_coords,
-            stencils: needs.gregory_points == GregoryPoints::Stencil,
-            exact_normals: needs.exact_normals,
             colors: needs.colors,
-            moves: false,
             cutouts: false,
+            ..depth_options(surface, needs)
         };
         let buffer = |name, kind, size| Buffer::new(device, &BufferDesc { name, kind, size });
         Ok(Self {

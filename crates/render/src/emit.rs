@@ -25,6 +25,11 @@ use crate::visibility::{bezier_part, bezier_patch, is_patch_unseen, is_quad_unse
 /// smaller ones by their number (`planish bench --tess`).
 const BATCH_VERTICES: u32 = 512;
 
+/// Vertices that a draw should generate on this device; 0: any number.
+pub(crate) fn batch_vertices(device: &Device) -> u32 {
+    if device.is_software() && device.has(Feature::DrawIndirectCount) { BATCH_VERTICES } else { 0 }
+}
+
 /// The stage's programs.
 pub(crate) struct Emit {
     patches: ComputePipeline,
@@ -36,8 +41,7 @@ pub(crate) struct Emit {
 
 impl Emit {
     pub fn new(device: &Device, needs: &FrameNeeds) -> Result<Self, Error> {
-        let is_batched = device.is_software() && device.has(Feature::DrawIndirectCount);
-        let batch = if is_batched { BATCH_VERTICES } else { 0 };
+        let batch = batch_vertices(device);
         let spec = [
             SpecConstant { id: shaders::emit_patches_comp::SPEC_SPACING, bits: needs.spacing.constant() },
             SpecConstant { id: shaders::emit_patches_comp::SPEC_BATCH_VERTICES, bits: batch },

@@ -12,6 +12,23 @@ pub enum Error {
     /// The device failed.
     #[error(transparent)]
     Gpu(#[from] planish_gpu::Error),
+    /// Colours that follow from points of several levels.
+    #[error(
+        "tables and substitutes have no colours that are subdivided as positions are: expected `t colorinterpolation`, bilinear ones, or none"
+    )]
+    SubdividedColors,
+    /// A face that a substitute of subdivision surfaces has no patch for.
+    #[error("face {face} (from 0) has {sides} sides: method {method} expects {accepted}")]
+    SubstituteFace {
+        /// The substitute.
+        method: &'static str,
+        /// The face.
+        face: u32,
+        /// Its number of sides.
+        sides: u32,
+        /// What it takes.
+        accepted: &'static str,
+    },
     /// A scheme that is there to compare with has no part in this.
     #[error("method {method} is there to compare with: expected no {what}")]
     Rival {

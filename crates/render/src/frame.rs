@@ -15,6 +15,7 @@ use crate::select::Select;
 use crate::spokes::SpokeStage;
 use crate::subdivide::Subdivide;
 use crate::surface::Surface;
+use crate::table::{EmitTable, VertexNormals};
 use crate::upload::address;
 
 /// The stages of a frame that make what is drawn.
@@ -24,8 +25,15 @@ pub struct FrameStages {
     subdivide: Subdivide,
     limit: Limit,
     spokes: Option<SpokeStage>,
-    emit: Emit,
+    normals: Option<VertexNormals>,
+    emit: EmitStage,
     needs: FrameNeeds,
+}
+
+/// The last of them.
+enum EmitStage {
+    Patches(Emit),
+    Table(EmitTable),
 }
 
 impl FrameStages {
@@ -37,7 +45,12 @@ impl FrameStages {
             subdivide: Subdivide::new(device)?,
             limit: Limit::new(device, needs)?,
             spokes: needs.gregory.then(|| SpokeStage::new(device, needs.rival.is_some())).transpose()?,
-            emit: Emit::new(device, needs)?,
+            normals: needs.vertex_normals.then(|| VertexNormals::new(device)).transpose()?,
+            emit: if needs.grids {
+                EmitStage::Table(EmitTable::new(device, needs)?)
+            } else {
+                EmitStage::Patches(Emit::new(device, needs)?)
+            },
             needs: *needs,
         })
     }
@@ -53,15 +66,18 @@ impl FrameStages {
         let (needs, desc) = (&self.needs, &surface.desc);
         assert_eq!(needs.gregory, desc.has_gregory_patches(), "stages and surface have Gregory patches");
         assert_eq!(needs.rival, desc.method.rival(), "stages and surface have patches of one scheme");
+        assert_eq!(needs.grids, desc.method.is_grid(), "stages and surface have grids");
+        assert_eq!(needs.vertex_normals, desc.has_vertex_normals(), "stages and surface have normals of vertices");
         assert!(!needs.gregory || needs.gregory_points == desc.gregory_points, "one way to make Gregory patches");
         keep(encoder, surface);
         encoder.timestamp("start");
         Select::record_start(encoder, surface);
         self.record_deform(encoder, surface);
         encoder.timestamp("animate");
-        let is_selected = surface.desc.method != SurfaceMethod::Uniform;
-        if is_selected {
-            self.select.record(encoder, surface);
+        match desc.method {
+            SurfaceMethod::Uniform => {}
+            method if method.is_grid() => self.select.record_densities(encoder, surface),
+            _ => self.select.record(encoder, surface),
         }
         self.subdivide.record(encoder, surface, &surface.frame.points);
         encoder.timestamp("subdivide");
@@ -71,9 +87,14 @@ impl FrameStages {
         if let Some(spokes) = &self.spokes {
             spokes.record(encoder, surface);
         }
+        if let Some(normals) = &self.normals {
+            normals.record(encoder, surface);
+        }
         encoder.timestamp("limit");
-        if is_selected {
-            self.emit.record(encoder, surface);
+        match &self.emit {
+            _ if desc.method == SurfaceMethod::Uniform => {}
+            EmitStage::Patches(emit) => emit.record(encoder, surface),
+            EmitStage::Table(emit) => emit.record(encoder, surface),
         }
     }
 

@@ -25,6 +25,7 @@ pub mod limit;
 pub mod lists;
 mod marks;
 mod motion;
+mod moving;
 pub mod objects;
 pub mod options;
 mod pipelines;
@@ -35,6 +36,7 @@ pub mod shading;
 pub mod spokes;
 pub mod subdivide;
 mod surface;
+mod table;
 mod targets;
 mod upload;
 pub mod visibility;
@@ -49,7 +51,8 @@ pub use frame::FrameStages;
 pub use lists::{PatchKind, Status};
 pub use objects::ObjectDesc;
 pub use options::{
-    Culling, Density, EndCap, FrameNeeds, FrameOptions, GregoryPoints, Selection, Spacing, SurfaceMethod, View,
+    Culling, Density, EndCap, FrameNeeds, FrameOptions, GregoryPoints, Selection, Spacing, SurfaceMethod, TableNormals,
+    TableWeights, View,
 };
 pub use surface::{MemoryBytes, PreprocessTimes, Preprocessed, Surface, SurfaceDesc, preprocess};
 pub use targets::{Layers, NO_SURFACE, Targets};

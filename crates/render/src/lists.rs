@@ -30,10 +30,12 @@ pub enum PatchKind {
     Triangle,
     /// Pieces of those.
     TriangleCut,
+    /// Faces whose points are rows of a table.
+    Table,
 }
 
 /// Number of kinds: `DRAW_COUNT` of the shaders.
-pub const KIND_COUNT: usize = 8;
+pub const KIND_COUNT: usize = 9;
 
 impl PatchKind {
     /// All kinds.
@@ -46,6 +48,7 @@ impl PatchKind {
         Self::GregoryCut,
         Self::Triangle,
         Self::TriangleCut,
+        Self::Table,
     ];
 
     /// Whether it is a piece of a patch.
@@ -56,13 +59,16 @@ impl PatchKind {
     /// The kinds that a method draws, with these end caps.
     pub fn of_method(method: SurfaceMethod, end_cap: EndCap) -> &'static [Self] {
         match method {
-            SurfaceMethod::Dfas | SurfaceMethod::Fas if end_cap == EndCap::Gregory => &Self::ALL,
+            SurfaceMethod::Dfas | SurfaceMethod::Fas if end_cap == EndCap::Gregory => {
+                &Self::ALL[..=Self::TriangleCut as usize]
+            }
             SurfaceMethod::Dfas | SurfaceMethod::Fas => &Self::ALL[..=Self::Cut as usize],
             SurfaceMethod::Gregory => {
                 &[Self::Regular, Self::Cut, Self::Gregory, Self::GregoryCut, Self::Triangle, Self::TriangleCut]
             }
             SurfaceMethod::Acc | SurfaceMethod::Pm => &[Self::Regular, Self::Cut, Self::Gregory, Self::GregoryCut],
             SurfaceMethod::Uniform => &[Self::Filling],
+            SurfaceMethod::Table | SurfaceMethod::Flat | SurfaceMethod::Phong | SurfaceMethod::Pn => &[Self::Table],
         }
     }
 }
@@ -147,7 +153,7 @@ impl Capacities {
         let patches = worst(&|mesh| all(&mesh.patches));
         let leaves = worst(&|mesh| all(&mesh.irregular));
         let gregory = worst(&|mesh| if mesh.spokes.is_empty() { 0 } else { all(&mesh.irregular) });
-        let entries = [patches, patches, leaves, 0, gregory, 0, gregory, 0];
+        let entries = [patches, patches, leaves, 0, gregory, 0, gregory, 0, patches];
         Self {
             chunks: chunk_counts.map(|of| u32::try_from(sum(of)).unwrap_or(u32::MAX)),
             active: std::array::from_fn(|level| {
@@ -264,6 +270,7 @@ impl Status {
             filling: self.counts.filling[level],
             gregory: self.counts.gregory[level],
             triangle: self.counts.triangle[level],
+            table: self.counts.table[level],
         };
         (0..level_count).map(of_level).collect()
     }

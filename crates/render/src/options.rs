@@ -20,6 +20,14 @@ pub enum SurfaceMethod {
     Pm,
     /// Global table-driven refinement drawn as triangles: the baseline of FAS section 8.1.
     Uniform,
+    /// Basis function tables over the cage subdivided once (Hollaender and Boubekeur 2010): any scheme.
+    Table,
+    /// Faces of the cage as they are, shaded smoothly: what substitutes are measured by.
+    Flat,
+    /// Phong tessellation (Boubekeur and Alexa 2008): a substitute to compare with.
+    Phong,
+    /// Curved PN triangles (Vlachos et al. 2001): a substitute to compare with.
+    Pn,
 }
 
 impl SurfaceMethod {
@@ -28,14 +36,48 @@ impl SurfaceMethod {
         matches!(self, Self::Gregory | Self::Acc | Self::Pm)
     }
 
+    /// Whether faces are grids of points that the tessellator makes one vertex of each: by table, or by a substitute.
+    pub fn is_grid(self) -> bool {
+        matches!(self, Self::Table | Self::Flat | Self::Phong | Self::Pn)
+    }
+
+    /// Whether it is over the faces of the cage itself, by their corners alone.
+    pub fn is_substitute(self) -> bool {
+        self.is_grid() && self != Self::Table
+    }
+
     /// The scheme of these patches, if they are no Gregory patches.
     pub fn rival(self) -> Option<Rival> {
         match self {
             Self::Acc => Some(Rival::Acc),
             Self::Pm => Some(Rival::Pm),
-            Self::Dfas | Self::Fas | Self::Gregory | Self::Uniform => None,
+            _ => None,
         }
     }
+}
+
+/// Where normals of surfaces by table come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TableNormals {
+    /// Tables of tangents: the limit surface's own.
+    #[default]
+    Tangents,
+    /// Subdivision Shading (Alexa and Boubekeur 2008): geometric normals of the mesh after so many steps, 2 at most, are subdivided as
+    /// positions are.
+    Subdivision(u32),
+    /// Geometric normals of the mesh after one step, interpolated.
+    Geometric,
+}
+
+/// How weights of tables are stored.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TableWeights {
+    /// 32-bit floats.
+    #[default]
+    Float,
+    /// 16 bits, in steps of 1/32767 of the largest: half the bytes. Sums of weights are 1 as before, as points are weighed relative to one of
+    /// them, and both sides of an edge have the same weights.
+    Short,
 }
 
 /// How the control points of Gregory patches are made.
@@ -154,6 +196,10 @@ pub struct FrameNeeds {
     pub moves: bool,
     /// Some materials have holes: what is shaded later, and shadows.
     pub cutouts: bool,
+    /// Faces are grids ([`SurfaceMethod::is_grid`]).
+    pub grids: bool,
+    /// Normals are made of those of vertices.
+    pub vertex_normals: bool,
 }
 
 impl FrameNeeds {
@@ -176,6 +222,8 @@ impl FrameNeeds {
             deforms: false,
             moves: false,
             cutouts: false,
+            grids: false,
+            vertex_normals: false,
         }
     }
 }

@@ -9,7 +9,7 @@ use planish_subdiv::gregory::Rival;
 
 use crate::error::Error;
 use crate::lists::PatchKind;
-use crate::options::{EndCap, Spacing, SurfaceMethod, View};
+use crate::options::{EndCap, Spacing, SurfaceMethod, TableNormals, TableWeights, View};
 use crate::program::stage;
 use crate::targets::{DEPTH_FORMAT, Layers};
 
@@ -72,6 +72,10 @@ pub(crate) struct PipelineOptions {
     pub moves: bool,
     /// Some materials have holes.
     pub cutouts: bool,
+    /// Where normals by table come from.
+    pub table_normals: TableNormals,
+    /// How weights of tables are stored.
+    pub table_weights: TableWeights,
 }
 
 /// The pipeline of each kind of patch that the method has: each on a thread of its own, as drivers compile on the caller's.
@@ -115,6 +119,12 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
         SpecConstant { id: shaders::gregory_patch_tesc::SPEC_STENCIL, bits: u32::from(options.stencils) },
         SpecConstant { id: shaders::bspline_patch_lean_tese::SPEC_COLORED, bits: u32::from(options.colors) },
         SpecConstant { id: shaders::bspline_patch_colors_tese::SPEC_MOVING, bits: u32::from(options.moves) },
+        SpecConstant { id: shaders::table_patch_lean_tese::SPEC_EVALUATE, bits: evaluation(options.method) },
+        SpecConstant { id: shaders::table_patch_lean_tese::SPEC_NORMALS, bits: table_normals(options.table_normals) },
+        SpecConstant {
+            id: shaders::table_patch_lean_tese::SPEC_SHORT_WEIGHTS,
+            bits: u32::from(options.table_weights == TableWeights::Short),
+        },
     ];
     let fragment = fragment_stage(options);
     let fragment_constants = [
@@ -129,9 +139,17 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
     let used: Vec<Vec<SpecConstant>> = geometry
         .iter()
         .map(|module| {
-            let is_patch = ["bspline_patch", "filling_quad", "gregory_patch", "acc_patch", "pm_patch", "uniform_quad"]
-                .iter()
-                .any(|stem| module.name.starts_with(stem));
+            let is_patch = [
+                "bspline_patch",
+                "filling_quad",
+                "gregory_patch",
+                "acc_patch",
+                "pm_patch",
+                "uniform_quad",
+                "table_patch",
+            ]
+            .iter()
+            .any(|stem| module.name.starts_with(stem));
             patch_constants.iter().filter(|constant| is_patch && knows(module, constant)).copied().collect()
         })
         .collect();
@@ -165,6 +183,25 @@ fn pipeline(device: &Device, options: &PipelineOptions, kind: PatchKind) -> Resu
     )?)
 }
 
+/// EVALUATE_.. of `glsl/shared/substitutes.glsl`.
+fn evaluation(method: SurfaceMethod) -> u32 {
+    match method {
+        SurfaceMethod::Flat => 1,
+        SurfaceMethod::Phong => 2,
+        SurfaceMethod::Pn => 3,
+        _ => 0,
+    }
+}
+
+/// NORMALS_.. of `glsl/shared/table_rows.glsl`.
+fn table_normals(normals: TableNormals) -> u32 {
+    match normals {
+        TableNormals::Tangents => 0,
+        TableNormals::Subdivision(_) => 1,
+        TableNormals::Geometric => 2,
+    }
+}
+
 /// The stages before rasterization.
 fn geometry_stages(options: &PipelineOptions, kind: PatchKind) -> Vec<&'static ShaderModule> {
     if options.method == SurfaceMethod::Uniform {
@@ -180,6 +217,19 @@ fn geometry_stages(options: &PipelineOptions, kind: PatchKind) -> Vec<&'static S
         )];
     }
     let list = &shaders::patch_list_vert::PROGRAM;
+    if kind == PatchKind::Table {
+        let evaluation = pick(
+            options,
+            [
+                &shaders::table_patch_lean_tese::PROGRAM,
+                &shaders::table_patch_layers_tese::PROGRAM,
+                &shaders::table_patch_colors_tese::PROGRAM,
+                &shaders::table_patch_shading_tese::PROGRAM,
+                &shaders::table_patch_dump_tese::PROGRAM,
+            ],
+        );
+        return vec![list, &shaders::table_patch_tesc::PROGRAM, evaluation];
+    }
     if matches!(kind, PatchKind::Gregory | PatchKind::GregoryCut | PatchKind::Triangle | PatchKind::TriangleCut) {
         if let Some(rival) = options.method.rival() {
             return rival_stages(list, rival, options);
@@ -317,5 +367,9 @@ fn pass_name(options: &PipelineOptions, kind: PatchKind) -> &'static str {
         (_, PatchKind::GregoryCut) => "cut Gregory quads",
         (_, PatchKind::Triangle) => "Gregory triangles",
         (_, PatchKind::TriangleCut) => "cut Gregory triangles",
+        (SurfaceMethod::Flat, PatchKind::Table) => "flat faces",
+        (SurfaceMethod::Phong, PatchKind::Table) => "Phong tessellation",
+        (SurfaceMethod::Pn, PatchKind::Table) => "PN triangles",
+        (_, PatchKind::Table) => "table patches",
     }
 }

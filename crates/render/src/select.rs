@@ -67,9 +67,8 @@ impl Select {
         }
     }
 
-    /// Records the stages: a dispatch a level, level 0 too, and seven; two more where there are n-gons, two fewer where
-    /// seams need not have the same bits. Takes the times `density` and `select`.
-    pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
+    /// Records the stages before anything is selected: three, or five where there are n-gons. Takes the time `density`.
+    pub fn record_densities(&self, encoder: &mut Encoder, surface: &Surface) {
         let scene = address(&surface.frame.scene);
         let heads = &surface.lists.heads;
         let object_threads = surface.objects.len() as u32 * CHUNK;
@@ -86,6 +85,14 @@ impl Select {
             encoder.compute_indirect(&self.around, &push, heads, head_offset(LIST_MIDDLES));
         }
         encoder.timestamp("density");
+    }
+
+    /// Records the stages: a dispatch a level, level 0 too, and seven; two more where there are n-gons, two fewer where
+    /// seams need not have the same bits. Takes the times `density` and `select`.
+    pub fn record(&self, encoder: &mut Encoder, surface: &Surface) {
+        self.record_densities(encoder, surface);
+        let scene = address(&surface.frame.scene);
+        let heads = &surface.lists.heads;
         for level in 0..=surface.tables.last_level {
             let list = if level == 0 { LIST_ROOTS } else { LIST_ACTIVE + level as usize };
             let push = shaders::select_comp::Push { scene, level, ..shaders::select_comp::Push::default() };

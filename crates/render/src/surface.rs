@@ -9,20 +9,21 @@ use planish_shaders::{DeviceAddress, DrawHead, FrameCounts, FrameData, FrameInpu
 use planish_subdiv::ControlMesh;
 use planish_subdiv::mesh::{HierarchicalEdit, VertexInterpolation};
 use planish_subdiv::refine::{CreasePatches, RefineOptions, Refinement};
-use planish_subdiv::tables::{MeshRanges, Tables, TexTree};
+use planish_subdiv::scheme::Scheme;
+use planish_subdiv::tables::{BasisOptions, MeshRanges, Tables, TexTree};
 
 use crate::buffers::{FrameBuffers, ListBuffers, TableBuffers};
 use crate::camera::FrameCamera;
 use crate::colors::ColorBuffers;
-use crate::deform::{DeformBuffers, DeformationDesc, PoseDesc};
+use crate::deform::DeformBuffers;
 use crate::density::frame_input;
 use crate::displacement::{DisplacementDesc, Maps, TexCoordBuffers};
 use crate::error::Error;
 use crate::lists::{Capacities, Phases, Status};
 use crate::marks::Marks;
-use crate::motion::{MotionBuffers, move_object};
+use crate::motion::MotionBuffers;
 use crate::objects::{CageFacts, MeshFacts, ObjectDesc};
-use crate::options::{Culling, EndCap, FrameOptions, GregoryPoints, SurfaceMethod};
+use crate::options::{Culling, EndCap, FrameOptions, GregoryPoints, SurfaceMethod, TableNormals, TableWeights};
 use crate::upload::address;
 
 /// What to make of cages.
@@ -40,6 +41,12 @@ pub struct SurfaceDesc {
     pub displaced: bool,
     /// How the control points of Gregory patches are made.
     pub gregory_points: GregoryPoints,
+    /// Subdivision scheme; all methods but [`SurfaceMethod::Table`] know Catmull-Clark alone.
+    pub scheme: Scheme,
+    /// Where normals of surfaces by table come from.
+    pub table_normals: TableNormals,
+    /// How weights of tables are stored.
+    pub table_weights: TableWeights,
 }
 
 impl SurfaceDesc {
@@ -47,6 +54,34 @@ impl SurfaceDesc {
     pub fn has_gregory_patches(&self) -> bool {
         let is_capped = self.end_cap == EndCap::Gregory && self.method != SurfaceMethod::Uniform;
         self.method.is_one_patch_a_face() || is_capped
+    }
+
+    /// Whether faces are those of Catmull-Clark's scheme, which texture coordinates are subdivided by.
+    pub fn has_tex_coords(&self) -> bool {
+        self.scheme == Scheme::CatmullClark && !self.method.is_substitute()
+    }
+
+    /// Whether normals are made of those of vertices.
+    pub fn has_vertex_normals(&self) -> bool {
+        self.basis_options().is_some_and(|options| options.ring_level.is_some())
+    }
+
+    /// What is made of cages whose faces are grids.
+    pub fn basis_options(&self) -> Option<BasisOptions> {
+        let &Self { method, scheme, table_normals, .. } = self;
+        if method.is_substitute() {
+            // Faces as they are: Loop and Stam's are triangles and quads.
+            let scheme = if method == SurfaceMethod::Pn { Scheme::Loop } else { Scheme::LoopStam };
+            let level = SUBSTITUTE_LEVEL;
+            return Some(BasisOptions { scheme, steps: 0, level, ring_level: Some(0), has_weights: false });
+        }
+        let (steps, ring_level) = match table_normals {
+            TableNormals::Tangents => (1, None),
+            TableNormals::Geometric => (1, Some(1)),
+            TableNormals::Subdivision(start) => (start.clamp(1, 2), Some(start.min(2))),
+        };
+        let options = BasisOptions { scheme, steps, level: TABLE_LEVEL + 1 - steps, ring_level, has_weights: true };
+        (method == SurfaceMethod::Table).then_some(options)
     }
 
     /// Whether regular patches may have a semi-sharp crease.
@@ -88,6 +123,23 @@ pub struct Preprocessed {
     pub times: PreprocessTimes,
 }
 
+/// Level of tables after one step: 32 segments a side of a face, 64 a side of the cage's.
+const TABLE_LEVEL: u32 = 5;
+/// Level of grids of substitutes: as many segments a side of the cage's faces.
+const SUBSTITUTE_LEVEL: u32 = 6;
+
+/// Refuses faces that a substitute has no patch for.
+fn check_substitute(mesh: &ControlMesh, method: SurfaceMethod, scheme: Scheme) -> Result<(), Error> {
+    let found = (0..).zip(&mesh.face_sizes).find(|(_, sides)| method.is_substitute() && !scheme.accepts(**sides));
+    match found {
+        None => Ok(()),
+        Some((face, &sides)) => {
+            let method = if method == SurfaceMethod::Pn { "pn" } else { "flat and phong" };
+            Err(Error::SubstituteFace { method, face, sides, accepted: scheme.accepted() })
+        }
+    }
+}
+
 /// Refuses what schemes that are there to compare with have no part in.
 fn refuse_rival(desc: &SurfaceDesc, is_asked: bool, what: &'static str) -> Result<(), Error> {
     match desc.method.rival().filter(|_| is_asked) {
@@ -113,6 +165,9 @@ pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preproc
         ignores_channels: !desc.displaced,
     };
     refuse_rival(desc, desc.displaced, "displacement map")?;
+    if desc.method.is_grid() && meshes.iter().any(|mesh| has_vertex_colors(mesh)) {
+        return Err(Error::SubdividedColors);
+    }
     refuse_rival(
         desc,
         meshes.iter().any(|mesh| has_vertex_colors(mesh)),
@@ -125,6 +180,12 @@ pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preproc
         // Poses of one character, say: tables know nothing of positions.
         if let Some(twin) = meshes[..index].iter().position(|earlier| mesh.has_tables_of(earlier)) {
             parts.push(parts[twin].clone());
+            times.tables += milliseconds(start);
+            continue;
+        }
+        if let Some(options) = desc.basis_options() {
+            check_substitute(mesh, desc.method, options.scheme)?;
+            parts.push(Tables::of_basis(mesh, &options)?);
             times.tables += milliseconds(start);
             continue;
         }
@@ -147,7 +208,7 @@ pub struct Surface {
     pub(crate) meshes: Vec<MeshRanges>,
     pub(crate) objects: Vec<Object>,
     /// The mesh of each object.
-    object_meshes: Vec<usize>,
+    pub(crate) object_meshes: Vec<usize>,
     pub(crate) phases: Phases,
     pub(crate) buffers: TableBuffers,
     pub(crate) frame: FrameBuffers,
@@ -159,9 +220,9 @@ pub struct Surface {
     pub(crate) deform: Option<DeformBuffers>,
     pub(crate) motion: Option<MotionBuffers>,
     /// What is known of each mesh's cage, and by how much its map displaces.
-    cage_facts: Vec<CageFacts>,
-    displacement_bounds: Vec<f32>,
-    next_camera: Option<FrameCamera>,
+    pub(crate) cage_facts: Vec<CageFacts>,
+    pub(crate) displacement_bounds: Vec<f32>,
+    pub(crate) next_camera: Option<FrameCamera>,
     pub(crate) crop: Option<[u32; 4]>,
     marks: Marks,
     density_scales: Vec<f32>,
@@ -201,7 +262,7 @@ impl Surface {
         let marks = Marks::new(&phases);
         let density_scales = density_scales(meshes, &ranges, tables.cage_point_count);
         let capacities = Capacities::new(objects, &ranges, device.is_software(), capacity);
-        let buffers = TableBuffers::new(device, &tables, &marks, &density_scales)?;
+        let buffers = TableBuffers::new(device, &tables, &marks, &density_scales, desc.table_weights)?;
         let frame = FrameBuffers::new(device, &tables, &gpu_objects, &sizes, &marks)?;
         let lists = ListBuffers::new(device, &capacities, &phases, desc.method)?;
         let tex_coords = if desc.displaced && desc.method == SurfaceMethod::Gregory {
@@ -271,84 +332,6 @@ impl Surface {
         Ok(self.frame.objects.write(0, &self.objects)?)
     }
 
-    /// Puts the objects in other places, for all frames submitted from now on. They are those that the surface was made with.
-    ///
-    /// # Panics
-    /// If there are not as many, or one has another mesh.
-    pub fn set_objects(&mut self, descs: &[ObjectDesc]) -> Result<(), Error> {
-        assert_eq!(descs.len(), self.objects.len(), "objects of the surface");
-        for ((object, &mesh), desc) in self.objects.iter_mut().zip(&self.object_meshes).zip(descs) {
-            assert_eq!(desc.mesh, mesh, "the mesh of an object");
-            crate::objects::place(object, desc);
-            self.cage_facts[mesh].set(object);
-            if object.map != planish_subdiv::topology::NONE {
-                crate::objects::displace(object, object.map, self.displacement_bounds[mesh]);
-            }
-        }
-        Ok(self.frame.objects.write(0, &self.objects)?)
-    }
-
-    /// Says how cages deform, one entry a mesh; until a pose is set all weights and joints are 0. Frames must be recorded anew then, by
-    /// stages that know of it ([`crate::FrameNeeds::deforms`]).
-    ///
-    /// # Panics
-    /// If a morph target or an influence names what is not there.
-    pub fn set_deformations(&mut self, device: &Device, descs: &[Option<DeformationDesc<'_>>]) -> Result<(), Error> {
-        self.deform = Some(DeformBuffers::new(device, descs, &self.meshes)?);
-        for (object, &mesh) in self.objects.iter_mut().zip(&self.object_meshes) {
-            crate::objects::deform(object, descs[mesh].is_some());
-        }
-        Ok(self.frame.objects.write(0, &self.objects)?)
-    }
-
-    /// Sets the pose of a mesh that deforms, for all frames submitted from now on.
-    ///
-    /// # Panics
-    /// If the surface has no deformations, or the pose is not one of the mesh's.
-    pub fn set_pose(&mut self, mesh: usize, pose: &PoseDesc<'_>) -> Result<(), Error> {
-        if let Some(points) = pose.points {
-            self.set_cage(mesh, points)?;
-        }
-        let deform = self.deform.as_ref().expect("a surface that deforms");
-        deform.pose.write(&deform.ranges[mesh], pose)
-    }
-
-    /// Makes room for the next moment of cages that deform: frames then say where their points go
-    /// ([`crate::FrameNeeds::moves`]). Frames must be recorded anew then.
-    pub fn prepare_motion(&mut self, device: &Device, meshes: &[&ControlMesh]) -> Result<(), Error> {
-        let Some(deform) = &self.deform else { return Ok(()) };
-        let motion = MotionBuffers::new(device, &self.tables, deform)?;
-        for (cage, ranges) in meshes.iter().zip(&self.meshes).filter(|(cage, _)| !cage.positions.is_empty()) {
-            motion.cage.write(cage_offset(ranges), &cage.positions)?;
-        }
-        self.motion = Some(motion);
-        self.write_scene()
-    }
-
-    /// Sets where a mesh that deforms is at the next moment.
-    ///
-    /// # Panics
-    /// If there is no room ([`Self::prepare_motion`]), or the pose is not one of the mesh's.
-    pub fn set_next_pose(&self, mesh: usize, pose: &PoseDesc<'_>) -> Result<(), Error> {
-        let motion = self.motion.as_ref().expect("room for the next moment");
-        if let Some(points) = pose.points {
-            assert_eq!(points.len(), self.meshes[mesh].cage_points.len(), "positions of cage {mesh}");
-            motion.cage.write(cage_offset(&self.meshes[mesh]), points)?;
-        }
-        let deform = self.deform.as_ref().expect("a surface that deforms");
-        motion.pose.write(&deform.ranges[mesh], pose)
-    }
-
-    /// Sets where objects and camera are at the next moment; they stay until then, and after [`Self::set_objects`].
-    pub fn set_motion(&mut self, now: &[ObjectDesc], next: &[ObjectDesc], camera: &FrameCamera) -> Result<(), Error> {
-        for ((object, now), next) in self.objects.iter_mut().zip(now).zip(next) {
-            let deforms = crate::objects::deforms(object) && self.motion.is_some();
-            move_object(object, &now.to_world, &next.to_world, deforms);
-        }
-        self.next_camera = Some(*camera);
-        Ok(self.frame.objects.write(0, &self.objects)?)
-    }
-
     /// Gives a mesh, which has this cage, a displacement map. Frames must be recorded anew then.
     ///
     /// # Panics
@@ -372,8 +355,8 @@ impl Surface {
 
     /// Gives the meshes, which have these cages, their texture coordinates where nothing is displaced. Frames must be recorded anew then.
     pub fn set_tex_coords(&mut self, device: &Device, meshes: &[&ControlMesh]) -> Result<(), Error> {
-        if self.desc.displaced {
-            // They are part of the tables.
+        // They are part of the tables; or other schemes' faces are not those that they lie on.
+        if self.desc.displaced || !self.desc.has_tex_coords() {
             return Ok(());
         }
         self.tex_coords = TexCoordBuffers::of_tree(device, &tex_tree(meshes, &self.meshes)?)?;
@@ -459,7 +442,7 @@ impl Surface {
         Ok(true)
     }
 
-    fn write_scene(&self) -> Result<(), Error> {
+    pub(crate) fn write_scene(&self) -> Result<(), Error> {
         let (tables, frame, lists) = (&self.buffers, &self.frame, &self.lists);
         let data = SceneData {
             frame_input: address(&frame.input),
@@ -475,6 +458,14 @@ impl Surface {
             stencils: address(&tables.stencil_faces),
             stencil_points: address(&tables.stencil_rings),
             stencil_weights: address(&tables.stencil_weights),
+            table_normals: address(&tables.basis.normals),
+            table_patches: address(&tables.basis.patches),
+            table_edges: address(&tables.basis.edges),
+            table_controls: address(&tables.basis.controls),
+            table_weights: address(&tables.basis.weights),
+            table_tangents: address(&tables.basis.tangents),
+            short_weights: address(&tables.basis.weights),
+            short_tangents: address(&tables.basis.tangents),
             ptex_faces: address(&tables.ptex_faces),
             neighbour_first: address(&tables.neighbours[0]),
             neighbours: address(&tables.neighbours[1]),
@@ -519,7 +510,11 @@ impl Surface {
             first_active: self.capacities.first_active(),
             mark_group_count: self.marks.groups.len() as u32,
             first_limit_mark: self.marks.first_limit,
+            table_level: self.tables.basis.level,
+            table_steps: self.tables.basis.steps,
+            short_scale: tables.basis.short_scale,
             materials: [self.materials as u32, (self.materials >> 32) as u32],
+            ..SceneData::default()
         };
         Ok(frame.scene.write(0, &[data])?)
     }
@@ -636,7 +631,7 @@ impl Surface {
 }
 
 /// Where a mesh's cage begins in the buffer of all.
-fn cage_offset(ranges: &MeshRanges) -> u64 {
+pub(crate) fn cage_offset(ranges: &MeshRanges) -> u64 {
     u64::from(ranges.cage_points.start) * size_of::<[f32; 3]>() as u64
 }
 

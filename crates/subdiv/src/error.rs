@@ -43,6 +43,29 @@ pub enum Error {
         /// The vertex.
         vertex: u32,
     },
+    /// A face that a scheme does not know.
+    #[error("face {face} (from 0) has {sides} sides: scheme {scheme} expects {accepted}")]
+    SchemeFace {
+        /// The scheme.
+        scheme: &'static str,
+        /// The face.
+        face: u32,
+        /// Its number of sides.
+        sides: u32,
+        /// What the scheme takes.
+        accepted: &'static str,
+    },
+    /// A cage without an inside and an outside everywhere, for the method `table`.
+    #[error(
+        "vertex {vertex} (from 0) is not manifold: method table expects edges of one or two faces and one fan a vertex"
+    )]
+    NonManifoldTable {
+        /// The vertex.
+        vertex: u32,
+    },
+    /// Hierarchical edits of a mesh that is evaluated by table.
+    #[error("tables are over the cage itself: expected no hierarchical edits")]
+    EditedTable,
     /// Hierarchical edits of a mesh that is drawn as Gregory patches.
     #[error("Gregory patches are those of the cage's own levels: expected no hierarchical edits")]
     EditedGregory,

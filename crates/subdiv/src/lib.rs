@@ -6,6 +6,7 @@
 //! makes of them) and [`eval`] (f64 evaluator).
 
 mod base_level;
+mod basis;
 pub mod edits;
 pub mod error;
 pub mod eval;
@@ -17,6 +18,7 @@ pub mod patch;
 pub mod refine;
 mod ring;
 pub mod rules;
+pub mod scheme;
 pub mod selection;
 mod sharpness;
 pub mod stencil;

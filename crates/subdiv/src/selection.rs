@@ -25,12 +25,14 @@ pub struct PatchCounts {
     pub gregory: u32,
     /// Gregory triangles.
     pub triangle: u32,
+    /// Faces that are evaluated by table.
+    pub table: u32,
 }
 
 impl PatchCounts {
     /// Patches of all kinds.
     pub fn total(&self) -> u32 {
-        self.regular + self.transition + self.filling + self.gregory + self.triangle
+        self.regular + self.transition + self.filling + self.gregory + self.triangle + self.table
     }
 }
 

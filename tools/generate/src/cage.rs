@@ -49,6 +49,19 @@ impl Cage {
         self.faces.extend(other.faces.iter().map(|face| face.iter().map(|vertex| vertex + first).collect()));
     }
 
+    /// Splits every quad in two triangles along its shorter diagonal. Texture coordinates are dropped.
+    pub fn split_quads(&mut self) {
+        let at = |vertex: u32| self.positions[vertex as usize];
+        let halves = |face: &Vec<u32>| match face[..] {
+            [a, b, c, d] if at(a).distance(at(c)) <= at(b).distance(at(d)) => vec![vec![a, b, c], vec![a, c, d]],
+            [a, b, c, d] => vec![vec![a, b, d], vec![b, c, d]],
+            _ => vec![face.clone()],
+        };
+        self.faces = self.faces.iter().flat_map(halves).collect();
+        self.face_uvs.clear();
+        self.uvs.clear();
+    }
+
     /// The mesh with every position mapped; the map must not turn it inside out.
     pub fn map(mut self, position: impl Fn(DVec3) -> DVec3) -> Self {
         self.positions.iter_mut().for_each(|p| *p = position(*p));

@@ -71,6 +71,9 @@ enum Command {
         /// About which share of the edges is creased
         #[arg(long, default_value_t = 0.0)]
         creased: f64,
+        /// Split every quad in two triangles, along its shorter diagonal
+        #[arg(long)]
+        triangles: bool,
         /// OBJ file to write
         #[arg(short, long)]
         out: PathBuf,
@@ -158,11 +161,14 @@ fn run() -> Result<()> {
             let text = distances::scene(&scene, &file, frames).with_context(|| model.display().to_string())?;
             write(&out, text.to_json())
         }
-        Command::Blob { faces, irregular, creased, out } => {
+        Command::Blob { faces, irregular, creased, triangles, out } => {
             ensure!((0.0..=1.0).contains(&irregular), "--irregular: found {irregular}, expected 0 to 1");
             ensure!((0.0..=1.0).contains(&creased), "--creased: found {creased}, expected 0 to 1");
             let mut cage = large::blob(faces, irregular);
             add_creases(&mut cage, creased);
+            if triangles {
+                cage.split_quads();
+            }
             write_cage(&out, "A closed blob with extraordinary vertices all over.", &cage)
         }
         Command::Torus { u, v, out } => write_cage(&out, "A torus of regular quads.", &solids::torus(u, v)),

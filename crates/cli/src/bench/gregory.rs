@@ -59,6 +59,7 @@ pub fn run(bench: &Bench, device: &Device, cage: &Cage) -> Result<Vec<GregoryRow
                 gregory_points,
                 // Of ACC and Pm-patches nothing is.
                 is_culled: false,
+                ..Setting::default()
             };
             match Timed::new(bench, device, cage, setting) {
                 Ok(timed) => of_factor.push((name, method, timed)),
@@ -95,7 +96,7 @@ fn evaluated_points(method: SurfaceMethod) -> u32 {
         SurfaceMethod::Gregory => 20,
         SurfaceMethod::Acc => 32,
         SurfaceMethod::Pm => 14,
-        SurfaceMethod::Fas | SurfaceMethod::Dfas | SurfaceMethod::Uniform => 0,
+        _ => 0,
     }
 }
 

@@ -2,11 +2,15 @@
 
 use anyhow::Result;
 use planish_gpu::{Device, SubmitReport};
-use planish_render::{Density, EndCap, FrameNeeds, GregoryPoints, Layers, SurfaceDesc, SurfaceMethod, View};
+use planish_render::{
+    Density, EndCap, FrameNeeds, GregoryPoints, Layers, SurfaceDesc, SurfaceMethod, TableNormals, TableWeights, View,
+};
 use planish_subdiv::refine::CreasePatches;
+use planish_subdiv::scheme::Scheme;
 use serde::Serialize;
 
 use super::gregory::fetched_points;
+use super::grids::bytes_a_point;
 use super::{Bench, median};
 use crate::cage::Cage;
 use crate::moment::Moment;
@@ -31,6 +35,8 @@ pub struct Measured {
     pub tessellation: TessellationRuns,
     /// Points and vectors that a control shader reads for a Gregory patch, in the mean.
     pub gregory_fetched_points: f64,
+    /// Bytes that an evaluation shader reads for a point inside a face that is a grid, in the mean.
+    pub grid_bytes: f64,
     /// Median times of the stages.
     pub gpu_ms: GpuStats,
     /// Median time from cage upload to fence.
@@ -59,7 +65,7 @@ impl Measured {
     pub fn patch_count(&self) -> u64 {
         let patches = &self.patches;
         let gregory = patches.gregory_quad + patches.gregory_triangle;
-        patches.regular + patches.transition + patches.quad + gregory
+        patches.regular + patches.transition + patches.quad + gregory + patches.table
     }
 }
 
@@ -87,7 +93,7 @@ impl<'a> Timed<'a> {
     pub fn new(bench: &Bench, device: &Device, cage: &'a Cage, setting: Setting) -> Result<Self> {
         let arguments = bench.arguments;
         let camera = cage.default_view()?;
-        let Setting { method, level, tess_factor, crease_patches, watertight, gregory_points, is_culled } = setting;
+        let Setting { method, level, tess_factor, crease_patches, watertight, gregory_points, .. } = setting;
         let objects = Moment::seen_by(cage, &camera, 0.0).objects;
         let mut plan = Plan {
             frame_camera: frame_camera(&camera, arguments.size),
@@ -109,10 +115,15 @@ impl<'a> Timed<'a> {
                 end_cap: EndCap::Quad,
                 displaced: cage.is_displaced(),
                 gregory_points,
+                scheme: setting.scheme,
+                table_normals: setting.table_normals,
+                table_weights: setting.table_weights,
             },
             options: frame_options(method, Density::Tess(tess_factor), false),
         };
-        plan.cull(arguments.no_cull || !is_culled);
+        plan.needs.grids = method.is_grid();
+        plan.needs.vertex_normals = plan.desc.has_vertex_normals();
+        plan.cull(arguments.no_cull || !setting.is_culled);
         let mut session = Session::new(device, cage, &plan, bench.console)?;
         let images = session.images(View::Shaded, Layers::None)?;
         let mut cage_motion = CageMotion::new(cage);
@@ -139,6 +150,7 @@ impl<'a> Timed<'a> {
             preprocess_ms: times.topology + times.tables,
             tessellation: self.tessellation,
             gregory_fetched_points: fetched_points(surface.tables()),
+            grid_bytes: bytes_a_point(surface.tables(), surface.desc().table_normals, surface.desc().table_weights),
             ..medians(surface.tables().last_level, &self.frames)
         }
     }
@@ -153,6 +165,9 @@ pub struct Setting {
     pub crease_patches: CreasePatches,
     pub watertight: bool,
     pub gregory_points: GregoryPoints,
+    pub scheme: Scheme,
+    pub table_normals: TableNormals,
+    pub table_weights: TableWeights,
     /// What cannot be seen is left out, unless that is not wanted.
     pub is_culled: bool,
 }
@@ -166,6 +181,9 @@ impl Default for Setting {
             crease_patches: CreasePatches::default(),
             watertight: true,
             gregory_points: GregoryPoints::default(),
+            scheme: Scheme::default(),
+            table_normals: TableNormals::default(),
+            table_weights: TableWeights::default(),
             is_culled: true,
         }
     }

@@ -7,6 +7,7 @@
 //! | `creases` | crease patches of every kind with refined creases |
 //! | `seams` | frames whose seams have the same bits on both sides with frames of patches by themselves |
 //! | `gregory` | both implementations of Gregory patches with fas, dfas, ACC and Pm-patches |
+//! | `grids` | basis function tables with flat faces, Phong tessellation, PN triangles, fas and dfas |
 //! | `path` | fas with dfas, along a camera path or from the scene's cameras; `chart` draws it |
 //! | `cpu` | the building of tables alone |
 //! | `measure` | what all of them measure of a frame |
@@ -17,6 +18,7 @@ mod cpu;
 mod creases;
 mod factors;
 mod gregory;
+mod grids;
 mod levels;
 mod measure;
 mod path;
@@ -51,6 +53,8 @@ pub fn run(arguments: &BenchArguments, console: &Console) -> Result<()> {
         bench.scenes(Some(&device), |cage| seams::run(&bench, &device, cage))?;
     } else if arguments.gregory {
         bench.scenes(Some(&device), |cage| gregory::run(&bench, &device, cage))?;
+    } else if arguments.tables {
+        bench.scenes(Some(&device), |cage| grids::run(&bench, &device, cage))?;
     } else if arguments.tess.is_empty() {
         bench.scenes(Some(&device), |cage| levels::run(&bench, &device, cage))?;
     } else {

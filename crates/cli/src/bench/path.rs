@@ -3,9 +3,10 @@
 
 use anyhow::{Result, bail};
 use planish_gpu::Device;
-use planish_render::{Density, EndCap, GregoryPoints, Layers, SurfaceMethod, View};
+use planish_render::{Density, EndCap, GregoryPoints, Layers, SurfaceMethod, TableNormals, TableWeights, View};
 use planish_scene::Camera;
 use planish_subdiv::refine::CreasePatches;
+use planish_subdiv::scheme::Scheme;
 use serde::Serialize;
 
 use super::chart::{Chart, Series};
@@ -103,6 +104,9 @@ impl Method {
     fn new(bench: &Bench, device: &Device, cage: &Cage, method: SurfaceMethod, cameras: &[Camera]) -> Result<Self> {
         let arguments = bench.arguments;
         let setting = PlanSetting {
+            scheme: Scheme::CatmullClark,
+            table_normals: TableNormals::Tangents,
+            table_weights: TableWeights::Float,
             method,
             max_level: arguments.max_level,
             crease_patches: CreasePatches::default(),

@@ -6,9 +6,11 @@ use planish_render::limit::limit_with_tangents;
 use planish_render::spokes::spokes;
 use planish_render::{
     Culling, Density, EndCap, FrameNeeds, FrameOptions, GregoryPoints, Selection, Spacing, SurfaceDesc, SurfaceMethod,
+    TableNormals, TableWeights,
 };
 use planish_subdiv::gregory::{GregorySurface, Normals};
 use planish_subdiv::refine::CreasePatches;
+use planish_subdiv::scheme::Scheme;
 
 use crate::lab::Lab;
 use crate::world::{World, scene};
@@ -37,6 +39,9 @@ pub const DESC: SurfaceDesc = SurfaceDesc {
     end_cap: EndCap::Quad,
     displaced: false,
     gregory_points: GregoryPoints::TwoStage,
+    scheme: Scheme::CatmullClark,
+    table_normals: TableNormals::Tangents,
+    table_weights: TableWeights::Float,
 };
 
 pub fn world(lab: &Lab, name: &str) -> World {

@@ -48,7 +48,11 @@ impl Tables {
         MeshRanges {
             cage_points: 0..self.cage_point_count,
             rows: self.levels.iter().map(|level| level.dispatches.clone()).collect(),
-            patches: self.patch_ranges.clone(),
+            patches: if self.basis.patches.is_empty() {
+                self.patch_ranges.clone()
+            } else {
+                vec![0..self.basis.patches.len() as u32, 0..0]
+            },
             irregular: self.irregular_ranges.clone(),
             ptex_faces: 0..self.ptex_faces.len() as u32,
             slots: 0..self.slots.rings.count(),
@@ -97,6 +101,10 @@ impl Tables {
             merged.append_slots(part, mesh);
             merged.append_rows(part, points);
             merged.append_limits(part, mesh, points);
+            let patches = merged.basis.append(&part.basis, points, mesh.limits.start);
+            if !patches.is_empty() {
+                mesh.patches[0] = patches;
+            }
         }
         let stencils: Vec<(u32, Vec<u32>)> = parts
             .iter()
@@ -136,6 +144,10 @@ impl Tables {
             self.gregory.stencils.weights.len(),
             self.stars.indices.len(),
             self.patches.len(),
+            self.basis.patches.len(),
+            self.basis.controls.len(),
+            self.basis.weights.len(),
+            2 * self.basis.edges.len(),
             self.irregular.len(),
             self.slots.rings.indices.len(),
             self.slots.neighbours.indices.len(),
@@ -323,7 +335,7 @@ impl StencilRow {
     }
 }
 
-fn following(first: u32, count: u32) -> Range<u32> {
+pub(super) fn following(first: u32, count: u32) -> Range<u32> {
     first..first + count
 }
 

@@ -3,6 +3,7 @@
 //! Points of all levels live in one array, the cage's first. Everything here depends on connectivity alone and costs
 //! O(irregular faces x depth); nothing is composed down to the cage.
 
+mod basis;
 mod face_varying;
 mod gregory;
 mod gregory_stencils;
@@ -23,7 +24,9 @@ use crate::patch::{FillingQuad, PatchInfo, RegularPatch};
 use crate::refine::Refinement;
 use crate::stencil::{SharedWeights, StencilTable, has_large_faces};
 
+pub use crate::basis::{BasisOptions, FIXED_VALENCES, MAX_TABLE_LEVEL, MAX_TABLE_STEPS, TableSet, fixed_set};
 pub use crate::selection::PatchCounts;
+pub use basis::{BasisEdge, BasisPatch, BasisTable, TABLE_TRIANGLE};
 pub use face_varying::{FaceVaryingEvaluator, FaceVaryingPatch, FaceVaryingTable, TexTree};
 pub use gregory::{EdgeOwner, GregoryFace, GregoryKind, GregoryTable, RivalSpokeRows, Spoke};
 pub use gregory_stencils::{Connectivity, GregoryStencils, MAX_RING_POINTS, ROWS_PER_CORNER, StencilFace};
@@ -83,6 +86,8 @@ pub struct Tables {
     pub filling: Vec<FillingQuad>,
     /// The values of face-varying channels, refined to the end.
     pub face_varying: Vec<FaceVaryingTable>,
+    /// Faces that are evaluated by table.
+    pub basis: BasisTable,
     /// No irregular face of this level is refined, unless it is forced.
     pub max_level: u32,
     /// The deepest level.
@@ -90,9 +95,9 @@ pub struct Tables {
     /// Edits of points of all levels, level by level.
     pub edits: Vec<PointEdit>,
     /// For each of them the hierarchical edits that it combines: numbers of the mesh's edits, in their order.
-    edit_sources: Vec<Vec<u32>>,
+    pub(crate) edit_sources: Vec<Vec<u32>>,
     /// How many hierarchical edits the mesh has, or the meshes have.
-    hierarchical_edit_count: u32,
+    pub(crate) hierarchical_edit_count: u32,
 }
 
 impl Tables {

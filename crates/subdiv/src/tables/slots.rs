@@ -57,6 +57,18 @@ impl DensitySlots {
     }
 }
 
+impl DensitySlots {
+    /// Those of vertices alone.
+    pub(crate) fn of_vertices(&self, vertex_count: u32) -> Self {
+        let mut slots = Self::default();
+        for vertex in 0..vertex_count {
+            slots.neighbours.push(self.neighbours.of(vertex).iter().copied());
+            slots.rings.push([]);
+        }
+        slots
+    }
+}
+
 /// The faces of level 0 that are no quads.
 fn ngons(level: &Level) -> Vec<u32> {
     (0..level.face_count()).filter(|&face| level.sides(face) != 4).collect()

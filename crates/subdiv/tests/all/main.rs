@@ -1,5 +1,6 @@
 //! Cages through refinement, tables and selection, against the theory and the f64 evaluator.
 
+mod basis;
 mod cages;
 mod edits;
 mod face_varying;
