@@ -69,3 +69,49 @@ fn huge_claims_are_refused() {
     let deep = format!("{}{}", "def \"a\" {\n".repeat(300), "}\n".repeat(300));
     assert!(read(&deep).unwrap_err().to_string().contains("256 deep"));
 }
+
+/// Layers that other layers name: texts by file name; the first is read.
+fn read_layers(layers: &[(&str, &[u8])]) -> Result<Scene, String> {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, content) in layers {
+        std::fs::write(folder.path().join(name), content).unwrap();
+    }
+    let start = Instant::now();
+    let read = load(folder.path().join(layers[0].0), &LoadOptions::default());
+    assert!(start.elapsed() < Duration::from_secs(2), "{:?}", start.elapsed());
+    read.map_err(|error| {
+        let error = error.to_string();
+        assert!(!error.contains('\n'), "{error}");
+        error.replace(folder.path().to_str().unwrap(), "")
+    })
+}
+
+#[test]
+#[ignore]
+fn byte_scan() {
+    let bytes = std::fs::read(lamp("usdc")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scan.usdc");
+    let step: usize = std::env::var("STEP").map_or(7, |s| s.parse().unwrap());
+    let first: usize = std::env::var("FIRST").map_or(0, |s| s.parse().unwrap());
+    let mut kinds = std::collections::BTreeMap::<String, usize>::new();
+    let begin = Instant::now();
+    for at in (first..bytes.len()).step_by(step) {
+        for change in 0..5u8 {
+            let mut changed = bytes.clone();
+            changed[at] = match change { 0 => 0, 1 => 0xff, 2 => changed[at] ^ 0x80, 3 => changed[at].wrapping_add(1), _ => 0x7f };
+            std::fs::write(&path, &changed).unwrap();
+            eprintln!("AT {at} {change}");
+            let start = Instant::now();
+            let read = load(&path, &LoadOptions::default());
+            let took = start.elapsed();
+            if took > Duration::from_millis(100) { println!("SLOW {at} {change} {took:?}"); }
+            let text = match read { Ok(_) => "ok".to_owned(), Err(e) => e.to_string() };
+            let text = text.split(": ").skip(1).collect::<Vec<_>>().join(": ");
+            let text: String = text.chars().filter(|c| !c.is_ascii_digit()).take(90).collect();
+            *kinds.entry(text).or_default() += 1;
+        }
+    }
+    println!("bytes {} took {:?}", bytes.len(), begin.elapsed());
+    for (kind, count) in kinds { println!("{count:6} {kind}"); }
+}
