@@ -62,9 +62,8 @@ pub fn read_usd(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Scene, 
     let path = path.as_ref();
     crate::refuse_directory(path)?;
     // The crate that reads layers panics on some malformed ones.
-    guard::apart(|| read_checked(path, options)).unwrap_or_else(|| {
-        Err(misplaced(path, Fault::new("layers", "a malformed file", "a USD file")))
-    })
+    guard::apart(|| read_checked(path, options))
+        .unwrap_or_else(|| Err(misplaced(path, Fault::new("layers", "a malformed file", "a USD file"))))
 }
 
 /// What is wrong with a layer is told before what follows from it.
@@ -87,20 +86,26 @@ fn misplaced(path: &Path, fault: Fault) -> Error {
 }
 
 fn read(path: &Path, options: &LoadOptions, findings: &guard::Findings) -> Result<Scene, Fault> {
-    let mut warnings = Warnings::default();
     let stage = open(path, findings)?;
+    let scene = scene(path, &stage, options, findings);
+    // What is missing is told before what follows from it.
     stage.composition_errors().iter().try_for_each(layers::check)?;
-    let rate = rate(&stage)?;
-    let is_z_up = is_z_up(&stage)?;
-    let mut tree = Tree::read(&stage, rate, is_z_up)?;
+    scene
+}
+
+fn scene(path: &Path, stage: &usd::Stage, options: &LoadOptions, findings: &guard::Findings) -> Result<Scene, Fault> {
+    let mut warnings = Warnings::default();
+    let rate = rate(stage)?;
+    let is_z_up = is_z_up(stage)?;
+    let mut tree = Tree::read(stage, || findings.bytes(), rate, is_z_up)?;
     instancer::expand(&mut tree, rate)?;
-    let skeletons = skeleton::expand(&stage, &mut tree, rate)?;
-    let skins = skin::Skins { stage: &stage, skeletons: &skeletons };
-    let first = authored_range(&stage, rate).or_else(|| moving_range(&tree.nodes, &[]));
+    let skeletons = skeleton::expand(stage, &mut tree, rate)?;
+    let skins = skin::Skins { stage, skeletons: &skeletons };
+    let first = authored_range(stage, rate).or_else(|| moving_range(&tree.nodes, &[]));
     let time = first.map_or(0.0, |[first, _]| first);
     let placed = place_nodes(&tree.nodes, time);
     let context = meshes::Context { tree: &tree, placed: &placed, skins: &skins, rate, time, is_z_up, options };
-    let mut materials = Materials::new(&stage);
+    let mut materials = Materials::new(stage);
     let read = meshes::read(&context, &mut materials, &mut warnings)?;
     if read.instances.is_empty() {
         return Err(Fault::new("/", "no mesh of faces", "one or more"));
@@ -115,11 +120,10 @@ fn read(path: &Path, options: &LoadOptions, findings: &guard::Findings) -> Resul
     (scene.lights, scene.environment) = (lights.lights, lights.environment);
     scene.materials = materials.materials;
     (scene.textures, scene.images) = (materials.textures.textures, materials.textures.images);
-    scene.time_range = authored_range(&stage, rate).or_else(|| moving_range(&scene.nodes, &scene.meshes));
+    scene.time_range = authored_range(stage, rate).or_else(|| moving_range(&scene.nodes, &scene.meshes));
     let rate = stage.frames_per_second();
     scene.frames_per_second = scene.time_range.and((rate.is_finite() && rate > 0.0).then_some(rate));
     for error in stage.composition_errors() {
-        layers::check(&error)?;
         warnings.push(None, crate::error::shown(&format!("{error}: ignored")));
     }
     scene.warnings = warnings.into_vec();

@@ -43,7 +43,9 @@ pub fn expand(cursor: &mut Cursor, most: u64, least: u64, budget: &mut Budget) -
     let mut expanded = vec![0; most as usize];
     let content = match block {
         [0, content @ ..] => content,
-        [chunks, ..] => return Err(cursor.fault(format!("a block of {chunks} chunks"), "one in one piece, which is below 2 GiB")),
+        [chunks, ..] => {
+            return Err(cursor.fault(format!("a block of {chunks} chunks"), "one in one piece, which is below 2 GiB"));
+        }
         [] => return Err(cursor.fault("an empty block", "one byte or more")),
     };
     let size = lz4_flex::decompress_into(content, &mut expanded);

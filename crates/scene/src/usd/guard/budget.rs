@@ -8,7 +8,7 @@ const FLOOR: u64 = 32 << 20;
 /// lie points, which do not pack, and values.
 const BYTES_A_BYTE: u64 = 64;
 /// Pairs of items of a list that are compared in the time that a byte is expanded in.
-const PAIRS_A_BYTE: u64 = 32;
+const PAIRS_A_BYTE: u64 = 64;
 
 /// What is left for a stage; all its layers share one.
 #[derive(Debug)]

@@ -52,7 +52,8 @@ pub fn check(bytes: &[u8], budget: &mut Budget) -> Result<(), Fault> {
     };
     file.specs(&paths)?;
     let lengths: Vec<u64> = tokens.iter().map(|token| token.len() as u64).collect();
-    let mut values_of = Values { bytes, version, tokens: &lengths, strings: &strings, paths: &paths, budget: file.budget };
+    let mut values_of =
+        Values { bytes, version, tokens: &lengths, strings: &strings, paths: &paths, budget: file.budget };
     for (index, &value) in values.iter().enumerate() {
         let name = names.get(index).and_then(|&name| tokens.get(name as usize));
         let name = name.map_or_else(|| "no name".into(), |name| String::from_utf8_lossy(name));
@@ -135,7 +136,9 @@ impl<'a> File<'a> {
         for string in 0..count {
             let token = cursor.u32()?;
             if token as usize >= tokens {
-                return Err(cursor.fault(format!("string {string} of token {token}"), format!("one of {tokens} tokens")));
+                return Err(
+                    cursor.fault(format!("string {string} of token {token}"), format!("one of {tokens} tokens"))
+                );
             }
             strings.push(token);
         }

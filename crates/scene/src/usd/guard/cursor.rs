@@ -18,10 +18,6 @@ impl<'a> Cursor<'a> {
         self.place
     }
 
-    pub fn at(&self) -> u64 {
-        self.at
-    }
-
     /// How many bytes the file has from here on.
     pub fn left(&self) -> u64 {
         (self.bytes.len() as u64).saturating_sub(self.at)
@@ -81,7 +77,8 @@ impl<'a> Cursor<'a> {
         let start = self.at;
         let offset = self.u64()?.cast_signed();
         let target = start.checked_add_signed(offset).filter(|&target| target <= self.bytes.len() as u64);
-        self.at = target.ok_or_else(|| self.fault(format!("an offset of {offset} from byte {start}"), "one within the file"))?;
+        self.at = target
+            .ok_or_else(|| self.fault(format!("an offset of {offset} from byte {start}"), "one within the file"))?;
         Ok(())
     }
 }

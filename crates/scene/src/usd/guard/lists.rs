@@ -1,6 +1,7 @@
 //! Values of a binary layer that hold others: lists, list operations, dictionaries and time samples.
 use super::cursor::Cursor;
 use super::kinds::Item;
+use super::text;
 use super::values::{VALUE_BYTES, Values};
 use crate::gltf::fault::Fault;
 
@@ -22,6 +23,9 @@ impl Values<'_> {
             cursor.bytes(count * size)?;
             self.budget.charge(cursor.place(), count * size)?;
             return Ok(count);
+        }
+        if item == Item::Relocation {
+            text::check_relocates(count, cursor.place())?;
         }
         for _ in 0..count {
             self.item(cursor, item, depth)?;

@@ -50,3 +50,6 @@ fn check(bytes: &[u8], budget: &mut Budget) -> Result<(), Fault> {
     })?;
     text::check(text, budget)
 }
+
+#[cfg(test)]
+mod tests;

@@ -60,11 +60,17 @@ fn walk(
                 Some(_) => return Err(cursor.fault(format!("entry {entry} in the tree twice"), "every entry once")),
                 None => return Err(cursor.fault(format!("a jump to entry {entry}"), format!("one of {count} entries"))),
             }
-            let end = if entry == 0 { End { length: 1, depth: 0 } } else { end(cursor, entries.tokens[entry], tokens, parent)? };
+            let end = if entry == 0 {
+                End { length: 1, depth: 0 }
+            } else {
+                end(cursor, entries.tokens[entry], tokens, parent)?
+            };
             budget.charge(cursor.place(), end.length)?;
             let path = entries.paths[entry] as usize;
             let Some(length) = lengths.get_mut(path) else {
-                return Err(cursor.fault(format!("entry {entry} of path {path}"), format!("one of {} paths", lengths.len())));
+                return Err(
+                    cursor.fault(format!("entry {entry} of path {path}"), format!("one of {} paths", lengths.len()))
+                );
             };
             *length = end.length;
             match entries.jumps[entry] {

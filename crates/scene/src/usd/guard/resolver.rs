@@ -33,6 +33,8 @@ struct State {
     /// The first layer as it was asked for, and as the resolver calls it.
     root: (PathBuf, PathBuf),
     budget: Budget,
+    /// Of all layers that were read.
+    bytes: u64,
     checked: HashSet<PathBuf>,
     /// A layer is opened to see what it is, and then to be read.
     last: Option<(PathBuf, Arc<[u8]>)>,
@@ -44,8 +46,13 @@ impl Findings {
     /// Of the layers of a file.
     pub fn of(path: &Path) -> Self {
         let root = (path.to_owned(), path.canonicalize().unwrap_or_else(|_| path.to_owned()));
-        let state = State { root, budget: Budget::new(), checked: HashSet::new(), last: None, error: None };
+        let state = State { root, budget: Budget::new(), bytes: 0, checked: HashSet::new(), last: None, error: None };
         Self(Rc::new(RefCell::new(state)))
+    }
+
+    /// How many bytes all layers have so far.
+    pub fn bytes(&self) -> u64 {
+        self.0.borrow().bytes
     }
 
     /// What is wrong with a layer, if anything is.
@@ -70,6 +77,7 @@ impl State {
         let bytes = read(path)?;
         if !self.checked.contains(path) {
             check(&bytes, &mut self.budget).map_err(|fault| misplaced(path, fault))?;
+            self.bytes += bytes.len() as u64;
             self.checked.insert(path.to_owned());
         }
         let bytes: Arc<[u8]> = bytes.into();

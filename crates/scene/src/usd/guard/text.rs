@@ -9,6 +9,8 @@ use crate::gltf::fault::Fault;
 
 /// Deepest nesting of brackets, and most names in a path.
 pub const MAX_NESTING: usize = 400;
+/// Relocations of a layer.
+const MAX_RELOCATES: u64 = 256;
 /// What a name takes in memory beside the path of the prim that it is in: two make a property.
 const NAME_BYTES: u64 = 128;
 
@@ -19,6 +21,8 @@ struct Open {
     items: u64,
     /// Length of the path of the prim that it is in.
     path: u64,
+    /// Whether it holds relocations.
+    is_relocates: bool,
 }
 
 /// What the next string names.
@@ -26,6 +30,8 @@ struct Open {
 enum Named {
     Nothing,
     Prim,
+    /// No string: a block of relocations.
+    Relocates,
 }
 
 struct Scan<'a> {
@@ -101,6 +107,7 @@ impl Scan<'_> {
         self.is_after_colon = *token == Token::Punctuation(':');
         self.named = match token {
             Token::Def | Token::Over | Token::Class | Token::Identifier("defaultPrim") => Named::Prim,
+            Token::Relocates => Named::Relocates,
             Token::Identifier(_) | Token::Punctuation('=') => self.named,
             _ => Named::Nothing,
         };
@@ -130,7 +137,7 @@ impl Scan<'_> {
             return Err(Fault::new(place, format!("brackets nested deeper than {MAX_NESTING}"), "fewer"));
         }
         let path = self.path() + if bracket == '{' { std::mem::take(&mut self.name) + 1 } else { 0 };
-        self.open.push(Open { bracket, items: 0, path });
+        self.open.push(Open { bracket, items: 0, path, is_relocates: self.named == Named::Relocates });
         Ok(())
     }
 
@@ -145,9 +152,20 @@ impl Scan<'_> {
         if expected != bracket {
             return Err(Fault::new(place, format!("{bracket:?}"), format!("{expected:?}")));
         }
-        let items = closed.map_or(0, |closed| closed.items);
+        let items = closed.as_ref().map_or(0, |closed| closed.items);
+        if closed.is_some_and(|closed| closed.is_relocates) {
+            check_relocates(items / 2, place)?;
+        }
         self.budget.charge_pairs(place, items)
     }
+}
+
+/// Refuses more relocations than the composer, which compares threes of them, can take in time.
+pub fn check_relocates(count: u64, place: &str) -> Result<(), Fault> {
+    if count > MAX_RELOCATES {
+        return Err(Fault::new(place, format!("{count} relocations"), format!("at most {MAX_RELOCATES}")));
+    }
+    Ok(())
 }
 
 /// Refuses a path of too many names: its prims nest as deep.
