@@ -2,6 +2,7 @@
 use openusd::sdf::Value;
 use openusd::usd;
 
+use super::layers;
 use crate::curve::{Animated, Curve, Interpolation};
 use crate::error::shown;
 use crate::gltf::fault::Fault;
@@ -38,6 +39,17 @@ impl<'a> Attributes<'a> {
         let first = usd::TimeCode::EARLIEST;
         let value = self.prim.attribute(name).get_at::<Value>(first).map_err(|error| self.failed(name, &error))?;
         value.map_or(Ok(None), |value| self.converted(name, expected, value, convert).map(Some))
+    }
+
+    /// Where an asset is; none if none is named.
+    pub fn asset(&self, name: &str) -> Result<Option<String>, Fault> {
+        let attribute = self.prim.attribute(name);
+        let value = attribute.get_at::<Value>(usd::TimeCode::EARLIEST).map_err(|error| self.failed(name, &error))?;
+        let Some(value) = value else { return Ok(None) };
+        let kind: &'static str = (&value).into();
+        let asset = layers::asset(&attribute, value);
+        let asset = asset.ok_or_else(|| self.fault(name, format!("a value of kind {kind}"), "an asset"))?;
+        Ok(Some(asset).filter(|asset| !asset.is_empty()))
     }
 
     /// The values of an attribute over time, in seconds; one at time 0 if it has the same at all times, none without a value.

@@ -130,15 +130,6 @@ pub fn boolean(value: Value) -> Option<bool> {
     }
 }
 
-/// Where an asset is: its resolved path, else the path as it is written.
-pub fn asset(value: Value) -> Option<String> {
-    match value {
-        Value::AssetPath(asset) => Some(asset.resolved_path().unwrap_or_else(|| asset.asset_path()).to_owned()),
-        Value::String(path) => Some(path),
-        _ => None,
-    }
-}
-
 /// A vector of two.
 pub fn vec2(value: Value) -> Option<DVec2> {
     match value {

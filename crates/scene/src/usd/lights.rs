@@ -181,8 +181,11 @@ fn dome(
     attributes: &Attributes,
     textures: &mut Textures,
 ) -> Result<Environment, Fault> {
-    let asset = input(attributes, "texture:file", "an asset", convert::asset)?;
-    let image = asset.filter(|asset| !asset.is_empty()).map(|asset| textures.image(&asset));
+    let asset = match attributes.asset("inputs:texture:file")? {
+        None => attributes.asset("texture:file")?,
+        asset => asset,
+    };
+    let image = asset.map(|asset| textures.image(&asset));
     let time = context.time;
     let radiance = radiance(attributes, 1.0)?.at(time) as f32;
     let is_visible = context.placed[item.node].is_visible;

@@ -9,7 +9,8 @@
 //! | `xform` | ops of a prim's transform |
 //! | `attributes` | what a prim says of itself, over time |
 //! | `convert` | values to numbers |
-//! | `guard` | what is checked before the crate reads a file, and its panics |
+//! | `guard` | what is checked before the crate reads a layer, and its panics |
+//! | `layers` | layers that are missing |
 //! | `faces` | faces, checked |
 //! | `tags` | creases, corners, holes and options |
 //! | `primvar` | values of vertices, faces and corners |
@@ -29,6 +30,7 @@ mod convert;
 mod faces;
 mod guard;
 mod instancer;
+mod layers;
 mod lights;
 mod materials;
 mod meshes;
@@ -58,34 +60,52 @@ use walk::Tree;
 /// When a layer cannot be read, or the content is wrong (see [`Error`]).
 pub fn read_usd(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Scene, Error> {
     let path = path.as_ref();
-    let bytes = crate::file_bytes(path)?;
-    let read = guard::check(&bytes).and_then(|()| {
-        // The crate that reads layers panics on some malformed ones.
-        let read = guard::silent(|| read(path, options));
-        read.unwrap_or_else(|| Err(Fault::new("layers", "a malformed file", "a USD file")))
-    });
-    read.map_err(|fault| Error::Misplaced {
-        path: path.to_owned(),
-        place: fault.place,
-        found: fault.found,
-        expected: fault.expected,
-    })
+    crate::refuse_directory(path)?;
+    // The crate that reads layers panics on some malformed ones.
+    guard::apart(|| read_checked(path, options))
+        .unwrap_or_else(|| Err(misplaced(path, Fault::new("layers", "a malformed file", "a USD file"))))
 }
 
-fn read(path: &Path, options: &LoadOptions) -> Result<Scene, Fault> {
+/// What is wrong with a layer is told before what follows from it.
+fn read_checked(path: &Path, options: &LoadOptions) -> Result<Scene, Error> {
+    let findings = guard::Findings::of(path);
+    let read = guard::silent(|| read(path, options, &findings));
+    if let Some(error) = findings.take_error() {
+        return Err(error);
+    }
+    let read = read.unwrap_or_else(|| Err(Fault::new("layers", "a malformed file", "a USD file")));
+    read.map_err(|fault| misplaced(path, fault))
+}
+
+fn misplaced(path: &Path, fault: Fault) -> Error {
+    let (path, found, expected) = (path.to_owned(), fault.found, fault.expected);
+    match fault.place {
+        place if place.is_empty() => Error::Malformed { path, line: None, found, expected },
+        place => Error::Misplaced { path, place, found, expected },
+    }
+}
+
+fn read(path: &Path, options: &LoadOptions, findings: &guard::Findings) -> Result<Scene, Fault> {
+    let stage = open(path, findings)?;
+    let scene = scene(path, &stage, options, findings);
+    // What is missing is told before what follows from it.
+    stage.composition_errors().iter().try_for_each(layers::check)?;
+    scene
+}
+
+fn scene(path: &Path, stage: &usd::Stage, options: &LoadOptions, findings: &guard::Findings) -> Result<Scene, Fault> {
     let mut warnings = Warnings::default();
-    let stage = open(path)?;
-    let rate = rate(&stage)?;
-    let is_z_up = is_z_up(&stage)?;
-    let mut tree = Tree::read(&stage, rate, is_z_up)?;
+    let rate = rate(stage)?;
+    let is_z_up = is_z_up(stage)?;
+    let mut tree = Tree::read(stage, || findings.bytes(), rate, is_z_up)?;
     instancer::expand(&mut tree, rate)?;
-    let skeletons = skeleton::expand(&stage, &mut tree, rate)?;
-    let skins = skin::Skins { stage: &stage, skeletons: &skeletons };
-    let first = authored_range(&stage, rate).or_else(|| moving_range(&tree.nodes, &[]));
+    let skeletons = skeleton::expand(stage, &mut tree, rate)?;
+    let skins = skin::Skins { stage, skeletons: &skeletons };
+    let first = authored_range(stage, rate).or_else(|| moving_range(&tree.nodes, &[]));
     let time = first.map_or(0.0, |[first, _]| first);
     let placed = place_nodes(&tree.nodes, time);
     let context = meshes::Context { tree: &tree, placed: &placed, skins: &skins, rate, time, is_z_up, options };
-    let mut materials = Materials::new(&stage);
+    let mut materials = Materials::new(stage);
     let read = meshes::read(&context, &mut materials, &mut warnings)?;
     if read.instances.is_empty() {
         return Err(Fault::new("/", "no mesh of faces", "one or more"));
@@ -100,7 +120,7 @@ fn read(path: &Path, options: &LoadOptions) -> Result<Scene, Fault> {
     (scene.lights, scene.environment) = (lights.lights, lights.environment);
     scene.materials = materials.materials;
     (scene.textures, scene.images) = (materials.textures.textures, materials.textures.images);
-    scene.time_range = authored_range(&stage, rate).or_else(|| moving_range(&scene.nodes, &scene.meshes));
+    scene.time_range = authored_range(stage, rate).or_else(|| moving_range(&scene.nodes, &scene.meshes));
     let rate = stage.frames_per_second();
     scene.frames_per_second = scene.time_range.and((rate.is_finite() && rate > 0.0).then_some(rate));
     for error in stage.composition_errors() {
@@ -117,11 +137,11 @@ fn authored_range(stage: &usd::Stage, rate: f64) -> Option<[f64; 2]> {
     authored.filter(|[first, last]| first.is_finite() && last.is_finite() && first <= last)
 }
 
-fn open(path: &Path) -> Result<usd::Stage, Fault> {
+fn open(path: &Path, findings: &guard::Findings) -> Result<usd::Stage, Fault> {
     let Some(name) = path.to_str() else {
         return Err(Fault::new("layers", "a path that is not UTF-8", "one that is"));
     };
-    let stage = usd::Stage::open(name);
+    let stage = usd::Stage::builder().resolver(guard::Checked::new(findings)).open(name);
     stage.map_err(|error| Fault::new("layers", format!("{error:#}"), "a USD file that can be read"))
 }
 

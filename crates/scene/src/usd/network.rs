@@ -4,8 +4,8 @@ use openusd::sdf::{Path, Value};
 use openusd::usd;
 
 use super::attributes::Attributes;
-use super::convert;
 use super::textures::Textures;
+use super::{convert, layers};
 use crate::gltf::fault::Fault;
 use crate::{TextureRef, Wrap};
 
@@ -61,6 +61,14 @@ pub fn value<T>(
     Ok(value.map_err(|error| failed(attribute.path(), &error))?.and_then(convert))
 }
 
+/// Where the asset of an input is; none if it has none.
+fn asset(stage: &usd::Stage, prim: &usd::Prim, name: &str) -> Result<Option<String>, Fault> {
+    let Source::Value(attribute) = source(stage, prim, &format!("inputs:{name}"))? else { return Ok(None) };
+    let value = attribute.get_at::<Value>(usd::TimeCode::EARLIEST);
+    let value = value.map_err(|error| failed(attribute.path(), &error))?;
+    Ok(value.and_then(|value| layers::asset(&attribute, value)).filter(|asset| !asset.is_empty()))
+}
+
 /// The texture that an input is connected to, with the name of its texture coordinates; none if it is to another shader.
 /// `is_color`: texels are sRGB unless the file says otherwise.
 pub fn texture(
@@ -72,9 +80,7 @@ pub fn texture(
     if identifier(shader)? != "UsdUVTexture" {
         return Ok(None);
     }
-    let Some(asset) = value(stage, shader, "file", convert::asset)?.filter(|asset| !asset.is_empty()) else {
-        return Ok(None);
-    };
+    let Some(asset) = asset(stage, shader, "file")? else { return Ok(None) };
     let token = |name| value(stage, shader, name, convert::token);
     let wrap = [wrap(token("wrapS")?.as_deref()), wrap(token("wrapT")?.as_deref())];
     let is_srgb = match token("sourceColorSpace")?.as_deref() {

@@ -1,10 +1,12 @@
 //! Images and how they are sampled (UsdUVTexture).
 use std::collections::HashMap;
-use std::io::Read as _;
+use std::fs::File;
+use std::io::BufReader;
 use std::path::PathBuf;
 
-use openusd::ar::{DefaultResolver, ResolvedPath, Resolver as _};
+use openusd::ar::split_package_relative_path_outer;
 
+use super::guard;
 use crate::{ImageContent, ImageSource, Texture, Wrap};
 
 /// Largest image in a package, bytes.
@@ -43,8 +45,8 @@ impl Textures {
 
 /// The bytes of an image in a package; none if it cannot be read.
 fn packed(asset: &str) -> Option<Vec<u8>> {
-    let opened = DefaultResolver::new().open_asset(&ResolvedPath::new(asset)).ok()?;
-    let mut bytes = Vec::new();
-    opened.take(MAX_IMAGE).read_to_end(&mut bytes).ok()?;
-    Some(bytes)
+    let (package, entry) = split_package_relative_path_outer(asset)?;
+    let package = File::open(package).ok()?;
+    let size = package.metadata().ok()?.len();
+    guard::entry(BufReader::new(package), size, &entry, MAX_IMAGE).ok()
 }

@@ -11,6 +11,9 @@ use crate::node::{Node, TransformStep};
 
 /// Prims that a stage may have: references multiply, and no honest scene of ours comes near.
 const MAX_PRIMS: usize = 1 << 20;
+/// What composing all prims may cost, at half a KiB each: the floor, and one more for so many bytes of layers.
+const MIN_COST: u64 = 1 << 19;
+const BYTES_A_COST: u64 = 4;
 /// How deep prims may stand in each other.
 const MAX_DEPTH: usize = 256;
 /// Prims without a place, and what is below them: they are read where something names them.
@@ -49,8 +52,8 @@ struct Ahead {
 }
 
 impl Tree {
-    /// Walks through a stage. `rate`: time codes a second.
-    pub fn read(stage: &usd::Stage, rate: f64, is_z_up: bool) -> Result<Self, Fault> {
+    /// Walks through a stage of layers of so many bytes, which grow while it is walked. `rate`: time codes a second.
+    pub fn read(stage: &usd::Stage, bytes: impl Fn() -> u64, rate: f64, is_z_up: bool) -> Result<Self, Fault> {
         let mut tree = Self { nodes: Vec::new(), items: Vec::new(), item_of: HashMap::new() };
         if is_z_up {
             let turn = TransformStep::Matrix(Curve::constant(xform::z_up()));
@@ -61,11 +64,23 @@ impl Tree {
         let roots = roots.iter().map(|name| stage.prim(format!("/{name}").as_str()));
         ahead.extend(roots.map(|prim| Ahead { prim, parent: None, depth: 0 }));
         ahead.reverse();
+        let mut cost = 0;
         while let Some(Ahead { prim, parent, depth }) = ahead.pop() {
             let path = prim.path().as_str().to_owned();
             if depth > MAX_DEPTH || tree.items.len() >= MAX_PRIMS {
                 let found = format!("{} prims, {depth} deep", tree.items.len());
                 return Err(Fault::new(path, found, format!("at most {MAX_PRIMS}, {MAX_DEPTH} deep")));
+            }
+            let index = prim.prim_index().graph().map_err(|error| failed(&path, &error))?;
+            let places = index.all_nodes().count() as u64;
+            // Below references in references, every place is composed once for every pair of levels above.
+            let levels = places.min(depth as u64);
+            cost += places * (1 + places / 32 + levels * levels / 8);
+            let most = MIN_COST + bytes() / BYTES_A_COST;
+            if cost > most {
+                let found = format!("composition that costs {cost} so far");
+                let expected = format!("at most {most} in layers of this size: instanceable prims share theirs");
+                return Err(Fault::new(path, found, expected));
             }
             let status = stage.prim_status(prim.path().clone()).map_err(|error| failed(&path, &error))?;
             if !usd::PrimPredicate::DEFAULT.matches(status) {

@@ -111,10 +111,28 @@ fn influences_of_joints_that_do_not_exist_are_refused() {
     assert_refused(&text, "/root/Mesh.primvars:skel:jointIndices: found joint 2, expected 0 to 1");
 }
 
+/// Asserts that a stage is refused for a layer, with the path where it was looked for.
+fn assert_missing(text: &str, place: &str) {
+    let error = read(text).expect_err("the stage should be refused").to_string();
+    let expected = format!("missing.usda@, named by {place} of name.usda: found nothing, expected a layer");
+    assert!(error.contains("name.usda: @") && error.ends_with(&expected), "{error}");
+}
+
 #[test]
 fn layers_and_cycles_are_composed_or_named() {
-    let scene = read(&format!("{}def \"x\" (prepend references = @missing.usda@) {{}}\n", mesh_with(""))).unwrap();
-    assert!(scene.warnings.iter().any(|warning| warning.text.contains("missing.usda")), "{:?}", scene.warnings);
-    let cycle = "def \"a\" (prepend references = </a/b>) { def \"b\" (prepend references = </a>) {} }\n";
-    let _ = read(&format!("{}{cycle}", mesh_with("")));
+    let with = |lines: &str| format!("{}{lines}\n", mesh_with(""));
+    let missing = with("def \"x\" (prepend references = @missing.usda@) {}");
+    assert_missing(&missing, "/x");
+    let missing = with("def \"x\" (payload = @missing.usda@</a>) {}");
+    assert_missing(&missing, "/x");
+    let missing = format!("(subLayers = [@missing.usda@])\n{}", mesh_with(""));
+    assert_missing(&missing, "subLayers");
+    for cycle in [
+        with("def \"a\" (prepend references = </a/b>) { def \"b\" (prepend references = </a>) {} }"),
+        with("def \"a\" (prepend references = @name.usda@</a>) {}"),
+        format!("(subLayers = [@name.usda@])\n{}", mesh_with("")),
+    ] {
+        let warnings = read(&cycle).unwrap().warnings;
+        assert!(warnings.iter().any(|warning| warning.text.contains("cycle")), "{warnings:?}");
+    }
 }
