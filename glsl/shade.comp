@@ -153,7 +153,8 @@ void main()
         }
     } else if (frame.v.environment.is_there != 0u && frame.v.environment.is_visible != 0u) {
         vec3 light = environment_mirror(frame.v.scene, frame.v.environment, ray, length(frame.v.ray_dx));
-        result.rgb = light * frame.v.environment.color;
+        // Seen, it covers: an image file without coverage shows nothing there.
+        result = vec4(light * frame.v.environment.color, 1.0);
     }
     frame.v.sum.v[pixel] += result;
 }

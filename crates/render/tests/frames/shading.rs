@@ -337,7 +337,7 @@ fn instances_of_a_mesh_have_materials_of_their_own() {
 }
 
 #[test]
-fn the_sky_is_seen_where_it_is_without_coverage() {
+fn the_sky_is_seen_where_it_is_and_covers() {
     let room = Darkroom::new(false);
     let size = [64, 32];
     // Red ahead along -z, green to the right, blue above.
@@ -360,7 +360,7 @@ fn the_sky_is_seen_where_it_is_without_coverage() {
         for (toward, channel) in looks {
             let toward = to_world * Vec3::from(toward);
             let frame = room.shoot(&mut subject, &camera([0.0; 3], toward.into(), 20.0, image_size), &[], 1);
-            let mut expected = [0.0; 4];
+            let mut expected = [0.0, 0.0, 0.0, 1.0];
             expected[channel] = 2.0;
             assert_eq!(at(&frame, image_size, 8, 8), expected, "{toward}");
         }
