@@ -71,14 +71,27 @@ pub(crate) fn around(poly: &Poly, fan: &Fan, sector: &Sector, width: u32) -> Wal
     let spokes: Vec<u32> = (0..sector.faces).map(|i| fan.spokes[(first + i) % fan.spokes.len()]).collect();
     let mut faces: Vec<u32> = spokes.iter().map(|&spoke| poly.face[spoke as usize]).collect();
     faces.sort_unstable();
-    let closed: Vec<u32> = if sector.is_closed || !fan.is_closed && sector.count == 1 {
+    let mut closed: Vec<u32> = if sector.is_closed || !fan.is_closed && sector.count == 1 {
         Vec::new()
     } else {
         [first, first + sector.faces].map(|edge| fan.edges[edge % fan.edges.len()]).to_vec()
     };
     if width > 1 {
         let beyond = poly.ring(&faces, width - 1);
-        faces = if closed.is_empty() { beyond } else { reached(poly, &faces, &beyond) };
+        if closed.is_empty() {
+            faces = beyond;
+        } else {
+            faces = reached(poly, &faces, &beyond);
+            // Where those edges go on the piece ends too: it would not know how.
+            let is_left = |&h: &u32| {
+                let twin = poly.twin(h);
+                twin < CUT
+                    && poly.sharpness(h) >= INFINITE_SHARPNESS
+                    && faces.binary_search(&poly.face[twin as usize]).is_err()
+            };
+            let left = faces.iter().flat_map(|&face| poly.half_edges(face)).filter(is_left);
+            closed.extend(left.map(|h| poly.edge[h as usize]));
+        }
     }
     walk(poly, sector.first, &faces, &closed)
 }
@@ -220,17 +233,6 @@ fn flat(poly: &Poly) -> Vec<[f64; 2]> {
 fn tangents(poly: &Poly, rows: &[Vec<(u32, f64)>]) -> [Vec<f64>; 2] {
     let size = rows.len();
     let fan = poly.fan(0, Some(0));
-    let is_single = !fan.is_closed && fan.spokes.len() == 1;
-    if is_single || poly.vertex_sharpness[0] >= INFINITE_SHARPNESS {
-        // One face, or a corner: between the edges that bound the sector; of a cone any two of them.
-        let last = if fan.is_closed { fan.ends[fan.ends.len() / 3 + 1] } else { fan.ends[fan.ends.len() - 1] };
-        let along = |end: u32| {
-            let mut row = unit(size, end as usize);
-            row[0] = -1.0;
-            row
-        };
-        return [along(fan.ends[0]), along(last)];
-    }
     // Differences to the vertex: rows less the vertex' row; its own weight is what makes the sum 0.
     let own: BTreeMap<u32, f64> = rows[0].iter().copied().collect();
     let reduced: Vec<Vec<(u32, f64)>> = rows
@@ -241,6 +243,21 @@ fn tangents(poly: &Poly, rows: &[Vec<(u32, f64)>]) -> [Vec<f64>; 2] {
             less.into_iter().filter(|&(point, weight)| point != 0 && weight != 0.0).collect()
         })
         .collect();
+    let is_single = !fan.is_closed && fan.spokes.len() == 1;
+    if is_single || poly.vertex_sharpness[0] >= INFINITE_SHARPNESS {
+        // One face, or a corner: between the edges that bound the sector; of a cone any two of them.
+        let last = if fan.is_closed { fan.ends[fan.ends.len() / 3 + 1] } else { fan.ends[fan.ends.len() - 1] };
+        let along = |end: u32| {
+            let mut row = unit(size, end as usize);
+            // A boundary has points of its own; of a curve through more than the next one the direction is known in the limit.
+            for _ in 0..if fan.is_closed { 0 } else { ROUNDS } {
+                row = left_multiplied(&row, &reduced, size);
+                normalize(&mut row);
+            }
+            with_sum_0(row)
+        };
+        return [along(fan.ends[0]), along(last)];
+    }
     let flat = flat(poly);
     let mut plane: [Vec<f64>; 2] = std::array::from_fn(|axis| flat.iter().map(|at| at[axis]).collect());
     for _ in 0..ROUNDS {
@@ -254,19 +271,23 @@ fn tangents(poly: &Poly, rows: &[Vec<(u32, f64)>]) -> [Vec<f64>; 2] {
     if a[0] * b[1] - a[1] * b[0] < 0.0 {
         plane[1].iter_mut().for_each(|weight| *weight = -*weight);
     }
-    plane.map(|mut row| {
-        row[0] = 0.0;
-        row[0] = -row.iter().sum::<f64>();
-        row
-    })
+    plane.map(with_sum_0)
+}
+
+/// Differences to the vertex as weights of points.
+fn with_sum_0(mut row: Vec<f64>) -> Vec<f64> {
+    row[0] = 0.0;
+    row[0] = -row.iter().sum::<f64>();
+    row
+}
+
+fn normalize(row: &mut [f64]) {
+    let length = row.iter().map(|w| w * w).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
+    row.iter_mut().for_each(|weight| *weight /= length);
 }
 
 fn orthonormalize([a, b]: &mut [Vec<f64>; 2]) {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let normalize = |row: &mut Vec<f64>| {
-        let length = row.iter().map(|w| w * w).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
-        row.iter_mut().for_each(|weight| *weight /= length);
-    };
     normalize(a);
     let along = dot(a, b);
     b.iter_mut().zip(a.iter()).for_each(|(b, a)| *b -= along * a);

@@ -1,12 +1,17 @@
 //! Basis function tables against the evaluator, against schemes written down once more, and against what theory says of them.
 
+mod butterfly;
+mod every_scheme;
+mod loops;
+mod mixed;
+
 use planish_subdiv::eval::Evaluator;
 use planish_subdiv::mesh::Creasing;
 use planish_subdiv::scheme::Scheme;
 use planish_subdiv::tables::{BasisOptions, BasisPatch, TABLE_TRIANGLE, Tables};
 use planish_subdiv::{ControlMesh, Error};
 
-use crate::cages::{cube, pole, prism, random, sharpened, sheet};
+use crate::cages::{cube, mesh, pole, prism, random, sharpened, sheet};
 use crate::surface::{distance, points};
 
 const LEVEL: u32 = 4;
@@ -19,6 +24,11 @@ struct GridPoint {
     uv: [f64; 2],
     position: [f64; 3],
     normal: [f64; 3],
+}
+
+/// Tables over the cage split once.
+fn options(scheme: Scheme, level: u32) -> BasisOptions {
+    BasisOptions { scheme, steps: 1, level, ring_level: None, has_weights: true }
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
@@ -87,8 +97,10 @@ fn grid(tables: &Tables, points: &[[f64; 3]]) -> Vec<Vec<GridPoint>> {
     tables.basis.patches.iter().map(of_patch).collect()
 }
 
-fn options(scheme: Scheme) -> BasisOptions {
-    BasisOptions { scheme, steps: 1, level: LEVEL, ring_level: None, has_weights: true }
+fn tables(mesh: &ControlMesh, scheme: Scheme) -> (Tables, Vec<[f64; 3]>) {
+    let tables = Tables::of_basis(mesh, &options(scheme, LEVEL)).expect("a cage of the scheme's");
+    let points = points(&mesh.positions, &tables);
+    (tables, points)
 }
 
 fn size(mesh: &ControlMesh) -> f64 {
@@ -108,7 +120,7 @@ fn catmull_clark_rows_are_the_limit_surface_at_every_point() {
     cages.extend((0..12).map(random).filter(|mesh| mesh.edits.is_empty()));
     let (mut checked, mut normals) = (0, 0);
     for (number, mesh) in cages.iter().enumerate() {
-        let tables = match Tables::of_basis(mesh, &options(Scheme::CatmullClark)) {
+        let tables = match Tables::of_basis(mesh, &options(Scheme::CatmullClark, LEVEL)) {
             Err(Error::NonManifoldTable { .. }) => continue,
             made => made.expect("tables"),
         };
@@ -138,4 +150,43 @@ fn catmull_clark_rows_are_the_limit_surface_at_every_point() {
         }
     }
     assert!(checked > 50_000 && normals > 30_000, "{checked} points, {normals} normals");
+}
+
+/// Two fans of n triangles each with a rim in common, not flat anywhere.
+fn bipyramid(n: u32) -> ControlMesh {
+    let mut positions = vec![[0.0, 1.2, 0.1], [0.1, -1.0, 0.0]];
+    positions.extend((0..n).map(|i| {
+        let angle = i as f32 * std::f32::consts::TAU / n as f32;
+        [angle.cos(), 0.1 * (i % 3) as f32, angle.sin()]
+    }));
+    let rim = |i: u32| 2 + i % n;
+    let faces = (0..n).flat_map(|i| [vec![0, rim(i + 1), rim(i)], vec![1, rim(i), rim(i + 1)]]);
+    mesh(positions, &faces.collect::<Vec<_>>())
+}
+
+/// A lattice of n x n pairs of equilateral triangles with `f(x, y)` over it.
+fn lattice(n: u32, f: impl Fn(f32, f32) -> f32) -> ControlMesh {
+    let positions = (0..=n).flat_map(|j| (0..=n).map(move |i| (i as f32 + 0.5 * j as f32, 0.75_f32.sqrt() * j as f32)));
+    let positions = positions.map(|(x, y)| [x, y, f(x, y)]).collect();
+    let at = |i: u32, j: u32| j * (n + 1) + i;
+    let faces = (0..n).flat_map(|j| {
+        (0..n).flat_map(move |i| {
+            [vec![at(i, j), at(i + 1, j), at(i, j + 1)], vec![at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]]
+        })
+    });
+    mesh(positions, &faces.collect::<Vec<_>>())
+}
+
+/// Meshes of triangles: closed ones with vertices of valences 3 to 18, and an open one.
+fn triangle_meshes() -> Vec<ControlMesh> {
+    let mut all: Vec<ControlMesh> = [3, 4, 5, 6, 7, 9, 18].map(bipyramid).to_vec();
+    all.push(lattice(4, |x, y| 0.3 * x * x - 0.2 * y * x));
+    all
+}
+
+/// Where parameters of a triangle of the cage lie on it.
+fn on_triangle(mesh: &ControlMesh, face: u32, [u, v]: [f64; 2]) -> [f64; 3] {
+    let corners = &mesh.face_vertices[3 * face as usize..][..3];
+    let [a, b, c] = [0, 1, 2].map(|i| mesh.positions[corners[i] as usize].map(f64::from));
+    std::array::from_fn(|axis| a[axis] + u * (b[axis] - a[axis]) + v * (c[axis] - a[axis]))
 }
