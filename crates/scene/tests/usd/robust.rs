@@ -57,12 +57,12 @@ fn changes(extension: &str, step: usize) {
 
 #[test]
 fn binaries_with_any_byte_replaced_are_read_or_refused() {
-    changes("usdc", 13);
+    changes("usdc", 23);
 }
 
 #[test]
 fn text_with_any_byte_replaced_is_read_or_refused() {
-    changes("usda", 61);
+    changes("usda", 181);
 }
 
 #[test]
