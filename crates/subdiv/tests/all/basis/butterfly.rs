@@ -22,7 +22,7 @@ fn butterfly_interpolates_the_cage_s_vertices_of_valences_3_to_18() {
         let mut met = 0;
         for point in points(&mesh) {
             assert!(point.position.iter().all(|c| c.is_finite()));
-            let corner = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].iter().any(|corner| *corner == point.uv);
+            let corner = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].contains(&point.uv);
             if corner {
                 let error = distance(point.position, on_triangle(&mesh, point.ptex_face, point.uv)) / size(&mesh);
                 assert!(error < 1e-6, "mesh {number}, face {}: {error:e}", point.ptex_face);
