@@ -4,6 +4,7 @@ mod butterfly;
 mod every_scheme;
 mod loops;
 mod mixed;
+mod shading;
 
 use planish_subdiv::eval::Evaluator;
 use planish_subdiv::mesh::Creasing;
