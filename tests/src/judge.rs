@@ -40,7 +40,7 @@ const UNWELDABLE: [&str; 10] = [
 const ROUNDED: &str = "far_from_origin";
 
 /// What the stats call the kinds of patches, in the order of their numbers in dumps.
-const KINDS: [&str; 5] = ["regular", "transition", "quad", "gregory_quad", "gregory_triangle"];
+const KINDS: [&str; 6] = ["regular", "transition", "quad", "gregory_quad", "gregory_triangle", "table"];
 
 /// Surfaces that are folded flat have no normal along whole edges.
 const FOLDED: [&str; 2] = ["double_sided_quad", "flat_pair"];

@@ -22,6 +22,14 @@ pub fn scenes() -> Vec<PathBuf> {
     meshes_in(&root().join("scenes"))
 }
 
+/// A mesh of `scenes/schemes/` by its file's stem: triangles, and triangles and quads, for other schemes than Catmull and Clark's.
+/// The oracle takes those for Loop's that are called so.
+pub fn scheme_scene(name: &str) -> PathBuf {
+    let path = root().join("scenes/schemes").join(format!("{name}.obj"));
+    assert!(path.is_file(), "{} is missing", path.display());
+    path
+}
+
 /// The models that lie beside the repository; none, with a word about it, where it stands alone.
 pub fn models() -> Vec<PathBuf> {
     let folder = root().join("../shared/models");

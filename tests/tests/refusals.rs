@@ -71,7 +71,7 @@ fn requests_that_cannot_be_met_are_refused_with_one_line() {
     let folder = temporary();
     let out = folder.path().join("out.exr");
     let cases = [
-        ("--method table", "table"),
+        ("--method table --scheme butterfly", "butterfly"),
         ("--scheme loop", "loop"),
         ("--scheme bilinear", "bilinear"),
         ("--camera nobody", "nobody"),

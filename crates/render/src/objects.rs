@@ -4,6 +4,7 @@ use glam::{Affine3A, Vec3};
 use planish_shaders::Object;
 use planish_subdiv::ControlMesh;
 use planish_subdiv::mesh::{FaceVaryingInterpolation, VertexInterpolation};
+use planish_subdiv::scheme::Scheme;
 use planish_subdiv::tables::MeshRanges;
 use planish_subdiv::topology::NONE;
 
@@ -137,11 +138,11 @@ pub(crate) struct MeshFacts {
 }
 
 impl MeshFacts {
-    pub fn new(mesh: &ControlMesh, ranges: &MeshRanges) -> Self {
-        // Chaikin's rule has weights below 0, and edits move points anywhere.
+    pub fn new(mesh: &ControlMesh, ranges: &MeshRanges, scheme: Scheme) -> Self {
+        // Chaikin's rule and some schemes have weights below 0, and edits move points anywhere.
         // Gregory patches may leave the hull too.
         let has_hull = mesh.edits.is_empty() && mesh.options.creasing == planish_subdiv::mesh::Creasing::Uniform;
-        let in_hull = has_hull && ranges.spokes.is_empty();
+        let in_hull = has_hull && ranges.spokes.is_empty() && scheme.is_within_hull();
         let linear_tex_coords = mesh.options.face_varying == FaceVaryingInterpolation::All;
         Self {
             cage: CageFacts::of_mesh(mesh),

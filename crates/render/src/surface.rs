@@ -256,7 +256,7 @@ impl Surface {
         let start = Instant::now();
         let Preprocessed { tables, meshes: ranges, mut times } = made;
         let facts: Vec<MeshFacts> =
-            meshes.iter().zip(&ranges).map(|(mesh, range)| MeshFacts::new(mesh, range)).collect();
+            meshes.iter().zip(&ranges).map(|(mesh, range)| MeshFacts::new(mesh, range, desc.scheme)).collect();
         let (gpu_objects, sizes) = crate::objects::objects(objects, &facts, &ranges);
         let phases = Phases::new(&tables);
         let marks = Marks::new(&phases);

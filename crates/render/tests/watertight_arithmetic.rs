@@ -39,7 +39,21 @@ const DISPLACEMENT: [&str; 12] = [
 /// Of the patches that are no bicubic ones.
 const EDGES: [&str; 7] =
     ["weigh_ends", "edge_normal", "bernstein", "without_sign_of_zero", "border_point", "over_36", "curve_position"];
-const WATERTIGHT: [(&ShaderModule, &[&str]); 18] = [
+/// Of faces that are evaluated by table.
+const TABLES: [&str; 8] = [
+    "table_row",
+    "table_middle",
+    "table_between",
+    "table_morph",
+    "unit_normal",
+    "to_world",
+    "normal_to_world",
+    "without_sign_of_zero",
+];
+const WATERTIGHT: [(&ShaderModule, &[&str]); 21] = [
+    (&shaders::table_patch_lean_tese::PROGRAM, &TABLES),
+    (&shaders::table_patch_layers_tese::PROGRAM, &TABLES),
+    (&shaders::table_patch_dump_tese::PROGRAM, &TABLES),
     (&shaders::bspline_patch_lean_tese::PROGRAM, &EVALUATION),
     (&shaders::bspline_patch_layers_tese::PROGRAM, &EVALUATION),
     (&shaders::bspline_patch_dump_tese::PROGRAM, &EVALUATION),
@@ -100,6 +114,7 @@ fn frames_are_selected_and_culled_by_arithmetic_without_contraction() {
         &shaders::emit_cut_comp::PROGRAM,
         &shaders::emit_gregory_comp::PROGRAM,
         &shaders::emit_gregory_cut_comp::PROGRAM,
+        &shaders::emit_table_comp::PROGRAM,
     ];
     for module in modules {
         let report = no_contraction_report(module.spirv).expect("valid SPIR-V");

@@ -135,6 +135,11 @@ fn run() -> Result<()> {
             for scene in scenes::all() {
                 write(&folder.join(scene.file_name()), scene.text())?;
             }
+            let schemes = folder.join(scenes::SCHEMES_FOLDER);
+            std::fs::create_dir_all(&schemes).with_context(|| format!("{}: cannot be made", schemes.display()))?;
+            for scene in scenes::of_schemes() {
+                write(&schemes.join(scene.file_name()), scene.text())?;
+            }
             for (name, scene) in scenes::placed() {
                 write(&folder.join(format!("{name}.json")), scene.to_json())?;
             }

@@ -1,10 +1,10 @@
 //! The files in `scenes/` are what the generator makes, can be read, and show what their names say.
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::path::PathBuf;
 
 use planish_generate::cage::Cage;
 use planish_generate::random_cage::manifold::is_manifold;
-use planish_generate::scenes::{SceneFile, all, gltf, placed};
+use planish_generate::scenes::{SCHEMES_FOLDER, SceneFile, all, gltf, of_schemes, placed};
 use planish_generate::{large, sectors, solids, terrain};
 
 fn folder() -> PathBuf {
@@ -130,6 +130,12 @@ fn committed_files_are_what_the_generator_makes() {
         );
         assert!(committed("glb") == scene.to_glb(), "{name}.glb is stale: planish-generate scenes scenes");
     }
+    let schemes = folder().join(SCHEMES_FOLDER);
+    for file in of_schemes() {
+        let committed = std::fs::read_to_string(schemes.join(file.file_name())).unwrap_or_default();
+        assert!(committed == file.text(), "schemes/{}.obj is stale: planish-generate scenes scenes", file.name);
+    }
+    assert_eq!(std::fs::read_dir(schemes).unwrap().count(), of_schemes().len(), "scenes/schemes/ has another file");
     let on_disk = |wanted: &str| {
         let entries = std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path());
         entries.filter(|path| path.extension().is_some_and(|extension| extension == wanted)).count()
@@ -144,7 +150,7 @@ fn committed_files_are_what_the_generator_makes() {
 
 #[test]
 fn every_file_is_read_without_a_warning_and_can_be_subdivided() {
-    for file in all() {
+    for file in all().into_iter().chain(of_schemes()) {
         let options = planish_scene::LoadOptions::default();
         let scene = planish_scene::read_obj(file.file_name(), file.text().as_bytes(), &options).unwrap();
         assert_eq!(scene.warnings, [], "{}", file.name);
@@ -161,7 +167,7 @@ fn is_meant_non_manifold(name: &str) -> bool {
 
 #[test]
 fn meshes_are_manifold_and_consistently_oriented_unless_their_names_say_otherwise() {
-    for file in all() {
+    for file in all().into_iter().chain(of_schemes()) {
         assert_eq!(is_manifold(&file.cage.faces), !is_meant_non_manifold(&file.name), "{}", file.name);
     }
 }
@@ -308,4 +314,30 @@ fn vertices_coincide_only_where_names_say_so() {
     for file in all().iter().filter(|file| !degenerate.contains(&file.name.as_str())) {
         assert_eq!(file.cage.clone().welded(1e-4).positions.len(), file.cage.positions.len(), "{}", file.name);
     }
+}
+
+#[test]
+fn meshes_for_schemes_of_triangles_have_the_faces_and_vertices_that_they_are_named_after() {
+    let named = |name: &str| of_schemes().into_iter().find(|file| file.name == name).expect(name).cage;
+    for SceneFile { name, cage, .. } in of_schemes() {
+        let sides = |count: usize| cage.faces.iter().filter(|face| face.len() == count).count();
+        assert_eq!(sides(3) + sides(4), cage.faces.len(), "{name}");
+        assert_eq!(sides(4) == 0, name.starts_with("loop_"), "{name}");
+        assert!(sides(3) > 0, "{name}");
+    }
+    for name in ["loop_valences", "loop_creased", "stam_mixed", "stam_rocket"] {
+        assert_eq!(boundary_edges(&named(name)), Vec::<[u32; 2]>::new(), "{name}");
+    }
+    let valences: BTreeSet<u32> =
+        around_vertices(&named("loop_valences")).iter().map(|vertex| vertex.face_count).collect();
+    assert_eq!(valences, (3..=9).collect());
+    // Around a vertex of so many faces, which of them are quads, from whichever face on.
+    let mixed = named("stam_mixed");
+    let mut shares = BTreeSet::new();
+    for vertex in 0..mixed.positions.len() as u32 {
+        let at = mixed.faces.iter().filter(|face| face.contains(&vertex));
+        let sides: Vec<usize> = at.map(Vec::len).collect();
+        shares.insert((sides.iter().filter(|&&sides| sides == 4).count(), sides.len()));
+    }
+    assert!(shares.len() >= 12, "quads and faces around vertices: {shares:?}");
 }

@@ -11,6 +11,7 @@ mod holes;
 mod mixed_creases;
 mod nonmanifold;
 mod parts;
+mod schemes;
 mod several;
 mod shapes;
 mod triangles;
@@ -65,6 +66,14 @@ pub fn all() -> Vec<SceneFile> {
         colors::files(),
     ];
     features.into_iter().flatten().collect()
+}
+
+/// The folder in `scenes/` of [`of_schemes`].
+pub const SCHEMES_FOLDER: &str = "schemes";
+
+/// All mesh files of `scenes/schemes/`: those for schemes of triangles.
+pub fn of_schemes() -> Vec<SceneFile> {
+    schemes::files()
 }
 
 /// All scene files of `scenes/`: their stems and what stands in them.
