@@ -35,9 +35,12 @@ fn of_schemes() -> Vec<(PathBuf, &'static str)> {
     let of = |names: &[&str], scheme: &'static str| {
         names.iter().map(|name| (scheme_scene(name), scheme)).collect::<Vec<_>>()
     };
-    let of_triangles = ["loop", "loop-stam", "butterfly"].map(|scheme| of(&LOOP_SCENES, scheme));
-    let mixed = ["loop-stam", "catmull-clark"].map(|scheme| of(&MIXED_SCENES, scheme));
-    [of_triangles.concat(), mixed.concat()].concat()
+    // Where every edge is of another sharpness few faces share a table: one scheme is enough there, and where boundaries differ alone.
+    let of_loop = of(&LOOP_SCENES, "loop");
+    let of_others =
+        ["loop-stam", "butterfly"].map(|scheme| of(&["loop_valences", "loop_sheet", "loop_creased"], scheme));
+    let mixed = [of(&MIXED_SCENES, "loop-stam"), of(&["stam_rocket"], "catmull-clark")];
+    [of_loop, of_others.concat(), mixed.concat()].concat()
 }
 
 #[test]
@@ -88,7 +91,9 @@ fn boundary_edge_count(cage: &Cage) -> usize {
 fn dumps_of_every_scheme_are_welded() {
     // Halves of edges have half the factor, and points of the next power of two.
     let segments = [2, 8, 16];
-    let cases: Vec<_> = of_schemes().into_iter().flat_map(|case| (0..3).map(move |i| (case.clone(), i))).collect();
+    let mut cases: Vec<_> = of_schemes().into_iter().flat_map(|case| (0..3).map(move |i| (case.clone(), i))).collect();
+    // Tables of sheets take the longest, and do not know what factors they are for.
+    cases.retain(|((mesh, _), i)| *i == 1 || boundary_edge_count(&Cage::read(mesh)) == 0);
     check_all(&cases, |((mesh, scheme), i)| {
         let flags = format!("--scheme {scheme} {}", FACTORS[*i]);
         let (vertices, cage) = (dump(mesh, &flags)?, Cage::read(mesh));
