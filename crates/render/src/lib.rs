@@ -36,7 +36,7 @@ pub mod shading;
 pub mod spokes;
 pub mod subdivide;
 mod surface;
-mod table;
+pub mod table;
 mod targets;
 mod upload;
 pub mod visibility;

@@ -97,7 +97,12 @@ fn scaled(a: [f32; 3]) -> [f32; 3] {
 /// `unit_normal` of `glsl/shared/bspline.glsl`.
 fn unit_normal(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     let (a, b) = (scaled(a), scaled(b));
-    let n = scaled([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]);
+    unit_vector([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+}
+
+/// `unit_vector` of `glsl/shared/bspline.glsl`.
+pub(crate) fn unit_vector(a: [f32; 3]) -> [f32; 3] {
+    let n = scaled(a);
     let size = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).max(f32::MIN_POSITIVE).sqrt();
     n.map(|c| c / size)
 }

@@ -603,6 +603,11 @@ impl Surface {
         Ok(device.download(&self.frame.spoke_middles, 0, self.tables.gregory.rival_spokes.len())?)
     }
 
+    /// The normals of the points of all levels as the last frame left them; waits for the device. For tests.
+    pub fn download_vertex_normals(&self, device: &Device) -> Result<Vec<[f32; 3]>, Error> {
+        Ok(device.download(&self.buffers.basis.normals, 0, self.tables.point_count() as usize)?)
+    }
+
     /// Densities of all objects' slots as the last frame left them; waits for the device.
     pub fn download_densities(&self, device: &Device) -> Result<Vec<shaders::SlotDensity>, Error> {
         let count = self.frame.densities.size() as usize / size_of::<shaders::SlotDensity>();

@@ -3,16 +3,20 @@
 
 use planish_gpu::{Buffer, ComputePipeline, Device, Encoder, SpecConstant};
 use planish_shaders as shaders;
-use planish_shaders::{EmitPush, TableNormalsPush};
-use planish_subdiv::tables::{BasisEdge, BasisPatch, BasisTable, Tables};
+use planish_shaders::{DrawEntry, EmitPush, EmitView, Object, TableNormalsPush};
+use planish_subdiv::selection::density_at;
+use planish_subdiv::tables::{BasisEdge, BasisPatch, BasisTable, MeshRanges, TABLE_TRIANGLE, Tables};
 
 use crate::error::Error;
+use crate::limit::unit_vector;
 use crate::lists::{CHUNK, LIST_BASE};
+use crate::objects::to_world;
 use crate::options::{FrameNeeds, TableNormals, TableWeights};
 use crate::program::{compute_pipeline, specialized_compute_pipeline};
 use crate::select::head_offset;
 use crate::surface::Surface;
 use crate::upload::{address, array, table};
+use crate::visibility::{add, cross, point_outside_planes, sub, times};
 
 /// The tables.
 pub(crate) struct BasisBuffers {
@@ -211,6 +215,104 @@ impl VertexNormals {
             encoder.compute(&self.limits, &push, count);
         }
     }
+}
+
+/// What the twin of the emit stage needs to know of an object.
+pub struct EmitTableInput<'a> {
+    /// Tables of all meshes.
+    pub tables: &'a Tables,
+    /// The object's mesh.
+    pub mesh: &'a MeshRanges,
+    /// The object, and its number.
+    pub object: (&'a Object, u32),
+    /// Densities of its slots.
+    pub densities: &'a [f32],
+    /// Points of all levels.
+    pub points: &'a [[f32; 3]],
+    /// The view.
+    pub view: &'a EmitView,
+}
+
+/// CPU twin of `glsl/emit_table.comp`, bit for bit where f32 arithmetic is not fused: entries in ascending order.
+pub fn emit_table(input: &EmitTableInput<'_>) -> Vec<DrawEntry> {
+    /// OBJECT_IN_HULL of the shaders.
+    const IN_HULL: u32 = 1;
+    let basis = &input.tables.basis;
+    let (object, number) = input.object;
+    let is_tested = input.view.cull != 0 && object.flags & IN_HULL != 0;
+    let entry = |place: u32| {
+        let patch = &basis.patches[place as usize];
+        let controls = &basis.controls[patch.first_control as usize..][..patch.control_count as usize];
+        let outside = |&control: &u32| {
+            point_outside_planes(to_world(object, input.points[control as usize]), input.view, object.displacement)
+        };
+        if is_tested && controls.iter().fold(31, |planes, control| planes & outside(control)) != 0 {
+            return None;
+        }
+        let low = edge_factors(input, patch);
+        let segments = low.iter().fold(1.0, |most: f32, &factor| most.max(factor)).ceil() as u32;
+        let flags = segments.next_power_of_two();
+        Some(DrawEntry { place, object: number, flags, triangles: 2 * flags * flags, low, ..DrawEntry::default() })
+    };
+    input.mesh.patches[0].clone().filter_map(entry).collect()
+}
+
+/// `table_factors` of `glsl/shared/table_factors.glsl`.
+fn edge_factors(input: &EmitTableInput<'_>, patch: &BasisPatch) -> [f32; 4] {
+    let basis = &input.tables.basis;
+    let scale = (-(basis.steps as f32)).exp2();
+    let slots = input.tables.ptex_faces[(input.mesh.ptex_faces.start + patch.ptex_face) as usize];
+    let is_triangle = patch.flags & TABLE_TRIANGLE != 0;
+    let sides = if is_triangle { 3 } else { 4 };
+    let density = |corner: usize| {
+        let [u, v] = [0, 3].map(|shift| scale * (patch.corner_uvs >> (6 * corner + shift) & 7) as f32);
+        if is_triangle {
+            let at = slots.map(|slot| input.densities[slot as usize]);
+            return ((1.0 - u - v) * at[0] + u * at[1]) + v * at[2];
+        }
+        density_at(input.densities, slots, u, v)
+    };
+    let mut factors = [1.0; 4];
+    for (edge, factor) in factors.iter_mut().enumerate().take(sides) {
+        let asked = (0.5 * (density(edge) + density((edge + 1) % sides))) * scale;
+        *factor = asked.clamp(1.0, (1 << basis.level) as f32);
+    }
+    factors
+}
+
+/// CPU twin of `glsl/table_normals.comp`, bit for bit where f32 arithmetic is not fused: normals of the points of all levels, and of limit
+/// points. Those of levels before the one that has rings are 0.
+pub fn vertex_normals(tables: &Tables, normals: TableNormals, points: &[[f32; 3]]) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
+    let mut made = vec![[0.0; 3]; points.len()];
+    let basis = &tables.basis;
+    let first = tables.levels[basis.ring_level as usize].points.start as usize;
+    for (i, (ring, is_closed)) in basis.rings.iter().enumerate() {
+        let offset = |k: usize| sub(points[ring[k % ring.len()] as usize], points[first + i]);
+        let count = if *is_closed || ring.is_empty() { ring.len() } else { ring.len() - 1 };
+        let sum = (0..count).fold([0.0; 3], |sum, k| add(sum, cross(offset(k), offset(k + 1))));
+        made[first + i] = unit_vector(sum);
+    }
+    let weighed = |made: &[[f32; 3]], indices: &[u32], weight: &dyn Fn(usize) -> f32| {
+        let terms = indices.iter().enumerate().map(|(k, &index)| times(made[index as usize], weight(k)));
+        unit_vector(terms.fold([0.0; 3], add))
+    };
+    for level in &tables.levels[basis.ring_level as usize + 1..] {
+        for point in level.points.clone() {
+            let row = tables.stencils.rows[(point - tables.cage_point_count) as usize];
+            let indices = &tables.stencils.indices[row.first_index as usize..][..row.count as usize];
+            let weights = &tables.stencils.weights[row.first_weight as usize..];
+            made[point as usize] = weighed(&made, indices, &|k| weights[k]);
+        }
+    }
+    let is_first_alone = normals == TableNormals::Geometric;
+    let limit = |row: &planish_subdiv::stencil::StencilRow| {
+        let count = if is_first_alone { 1 } else { row.count as usize };
+        let indices = &tables.limits.indices[row.first_index as usize..][..count];
+        let weights = &tables.limits.weights[row.first_weight as usize..];
+        weighed(&made, indices, &|k| if is_first_alone { 1.0 } else { weights[k][0] })
+    };
+    let limits = tables.limits.rows.iter().map(limit).collect();
+    (made, limits)
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ mod fuzz;
 mod gregory;
 mod gregory_culling;
 mod gregory_lists;
+mod grids;
 mod in_use;
 mod inside;
 mod kernels;

@@ -3,8 +3,9 @@
 use planish_render::density::density;
 use planish_render::emit::{EmitInput, Emitted, emit};
 use planish_render::spokes::spokes;
+use planish_render::table::{EmitTableInput, emit_table};
 use planish_render::visibility::point_outside_planes;
-use planish_render::{FrameCamera, FrameOptions, Spacing, limit, subdivide};
+use planish_render::{FrameCamera, FrameOptions, PatchKind, Spacing, limit, subdivide};
 use planish_shaders::{FrameInput, LimitPoint, Object, SlotDensity};
 use planish_subdiv::selection::{Cut, Selection, SlotDensities, density_rings, select};
 use planish_subdiv::tables::{MeshRanges, Tables};
@@ -63,6 +64,12 @@ impl Twin {
         for (index, object) in surface.objects().iter().enumerate().filter(|(index, _)| seen[*index]) {
             let mesh = &surface.meshes()[world.objects[index].mesh];
             let Some((slots, _)) = &twin.objects[index].densities else { continue };
+            if surface.desc().method.is_grid() {
+                let (object, points, view) = ((object, index as u32), &twin.points, &input.view);
+                let input = EmitTableInput { tables, mesh, object, densities: &slots.density, points, view };
+                twin.entries[PatchKind::Table as usize].extend(emit_table(&input));
+                continue;
+            }
             let cut = cut(tables, mesh, object, slots, selection);
             let emitted = emit(&EmitInput {
                 tables,
