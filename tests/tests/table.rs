@@ -10,7 +10,7 @@ use planish_tests::oracle::Report;
 use planish_tests::parallel::check_all;
 use planish_tests::ply::{Dump, Vertex};
 use planish_tests::program::{FAILED, Planish};
-use planish_tests::repository::{is_edited, root, scene, scenes, scheme_scene, stem};
+use planish_tests::repository::{is_about_rules, is_edited, root, scene, scenes, scheme_scene, stem};
 use planish_tests::weld::{Weld, faults, unbalanced_edge_count};
 
 const LOOP_SCENES: [&str; 5] = ["loop_valences", "loop_sheet", "loop_edge_only", "loop_chaikin", "loop_creased"];
@@ -35,9 +35,12 @@ fn of_schemes() -> Vec<(PathBuf, &'static str)> {
     let of = |names: &[&str], scheme: &'static str| {
         names.iter().map(|name| (scheme_scene(name), scheme)).collect::<Vec<_>>()
     };
-    let of_triangles = ["loop", "loop-stam", "butterfly"].map(|scheme| of(&LOOP_SCENES, scheme));
-    let mixed = ["loop-stam", "catmull-clark"].map(|scheme| of(&MIXED_SCENES, scheme));
-    [of_triangles.concat(), mixed.concat()].concat()
+    // Where every edge is of another sharpness few faces share a table: one scheme is enough there, and where boundaries differ alone.
+    let of_loop = of(&LOOP_SCENES, "loop");
+    let of_others =
+        ["loop-stam", "butterfly"].map(|scheme| of(&["loop_valences", "loop_sheet", "loop_creased"], scheme));
+    let mixed = [of(&MIXED_SCENES, "loop-stam"), of(&["stam_rocket"], "catmull-clark")];
+    [of_loop, of_others.concat(), mixed.concat()].concat()
 }
 
 #[test]
@@ -45,6 +48,12 @@ fn catmull_clark_dumps_are_the_closed_limit_surface() {
     let mut meshes = scenes();
     meshes.retain(|mesh| !is_edited(mesh) && Cage::read(mesh).is_manifold() && !stem(mesh).starts_with("nonmanifold_"));
     assert!(meshes.len() > 100);
+    // Rules are judged point by point without a device too: half of those scenes.
+    let mut rules = 0;
+    meshes.retain(|mesh| {
+        rules += usize::from(is_about_rules(mesh));
+        !is_about_rules(mesh) || rules.is_multiple_of(2)
+    });
     check_all(&meshes, |mesh| judge::check(mesh, "--method table --tess 8"));
 }
 
@@ -88,7 +97,9 @@ fn boundary_edge_count(cage: &Cage) -> usize {
 fn dumps_of_every_scheme_are_welded() {
     // Halves of edges have half the factor, and points of the next power of two.
     let segments = [2, 8, 16];
-    let cases: Vec<_> = of_schemes().into_iter().flat_map(|case| (0..3).map(move |i| (case.clone(), i))).collect();
+    let mut cases: Vec<_> = of_schemes().into_iter().flat_map(|case| (0..3).map(move |i| (case.clone(), i))).collect();
+    // Tables of sheets take the longest, and do not know what factors they are for.
+    cases.retain(|((mesh, _), i)| *i == 1 || boundary_edge_count(&Cage::read(mesh)) == 0);
     check_all(&cases, |((mesh, scheme), i)| {
         let flags = format!("--scheme {scheme} {}", FACTORS[*i]);
         let (vertices, cage) = (dump(mesh, &flags)?, Cage::read(mesh));
