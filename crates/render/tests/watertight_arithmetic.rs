@@ -40,12 +40,13 @@ const DISPLACEMENT: [&str; 12] = [
 const EDGES: [&str; 7] =
     ["weigh_ends", "edge_normal", "bernstein", "without_sign_of_zero", "border_point", "over_36", "curve_position"];
 /// Of faces that are evaluated by table.
-const TABLES: [&str; 8] = [
+const TABLES: [&str; 9] = [
     "table_row",
     "table_middle",
     "table_between",
     "table_morph",
-    "unit_normal",
+    "precise_cross",
+    "unit_vector",
     "to_world",
     "normal_to_world",
     "without_sign_of_zero",
@@ -93,7 +94,8 @@ fn shared_points_are_computed_without_contraction() {
 #[test]
 fn frames_are_selected_and_culled_by_arithmetic_without_contraction() {
     // Sums of whole numbers, products with powers of two and single quotients: fused or not, the bits are the same.
-    const EXACT: [(&str, u32); 8] = [
+    const EXACT: [(&str, u32); 9] = [
+        ("table_corner_uv", 1),
         ("ptex_uv", 2),
         ("density_at", 2),
         ("segment_count", 6),

@@ -339,5 +339,5 @@ fn meshes_for_schemes_of_triangles_have_the_faces_and_vertices_that_they_are_nam
         let sides: Vec<usize> = at.map(Vec::len).collect();
         shares.insert((sides.iter().filter(|&&sides| sides == 4).count(), sides.len()));
     }
-    assert!(shares.len() >= 12, "quads and faces around vertices: {shares:?}");
+    assert!(shares.len() >= 8, "quads and faces around vertices: {shares:?}");
 }

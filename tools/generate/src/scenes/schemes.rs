@@ -74,7 +74,9 @@ fn half_cut() -> Cage {
 
 /// A torus of quads, some of which are cut along one diagonal or the other.
 fn mixed() -> Cage {
-    cut(solids::torus(9, 6), |face| [None, Some(0), Some(1), None, None, Some(1), Some(0)][face * face % 7])
+    cut(solids::torus(9, 6), |face| {
+        [None, Some(0), Some(1), None, None, Some(1), Some(0)][(face * 5 + face / 6 * 3 + face / 11) % 7]
+    })
 }
 
 /// The mesh with quads cut from a corner on.
