@@ -336,7 +336,7 @@ mod tests {
             "wall_ms",
         ]);
         assert_eq!(keys(frame), expected);
-        let kinds = ["gregory_quad", "gregory_triangle", "quad", "regular", "transition", "truncated"];
+        let kinds = ["gregory_quad", "gregory_triangle", "quad", "regular", "table", "transition", "truncated"];
         assert_eq!(keys(&frame["patches"]), kinds);
         assert_eq!(
             keys(&frame["gpu_ms"]),
