@@ -46,7 +46,9 @@ fn of_schemes() -> Vec<(PathBuf, &'static str)> {
 #[test]
 fn catmull_clark_dumps_are_the_closed_limit_surface() {
     let mut meshes = scenes();
-    meshes.retain(|mesh| !is_edited(mesh) && Cage::read(mesh).is_manifold() && !stem(mesh).starts_with("nonmanifold_"));
+    // Colours that are subdivided are refused.
+    meshes.retain(|mesh| !is_edited(mesh) && Cage::read(mesh).is_manifold());
+    meshes.retain(|mesh| !stem(mesh).starts_with("nonmanifold_") && stem(mesh) != "color_vertex");
     assert!(meshes.len() > 100);
     // Rules are judged point by point without a device too: half of those scenes.
     let mut rules = 0;
@@ -241,7 +243,7 @@ fn what_there_are_no_tables_for_is_refused() {
     let (map, mesh) = (folder.path().join("map.png"), scene("uv_torus"));
     image::GrayImage::new(4, 4).save(&map).unwrap();
     let outcome = Planish::dump(&mesh, &out).flags("--method table --tess 2 --displacement").path(&map).run();
-    let expected = "method table draws the limit surface: expected no displacement map";
+    let expected = "method table is not displaced: expected no displacement map";
     assert_eq!(outcome.one_error(FAILED).unwrap(), format!("{}: {expected}", mesh.display()));
     assert!(!out.exists());
 }
