@@ -46,7 +46,7 @@ fn an_isolated_vertex_gives_three_patches_a_face_and_level_two_of_them_transitio
         let transition = 2 * n * levels;
         let patches = json!({
             "regular": 3 * n * (levels + 1) - transition, "transition": transition,
-            "quad": n, "gregory_quad": 0, "gregory_triangle": 0, "truncated": 0,
+            "quad": n, "gregory_quad": 0, "gregory_triangle": 0, "table": 0, "truncated": 0,
         });
         let by_level: Vec<u64> = (0..=levels).map(|level| 3 * n + if level == levels { n } else { 0 }).collect();
         let tess = 1 << depth;
@@ -100,6 +100,7 @@ fn check_growth(path: &Path) {
                 let expected = json!({
                     "points": points, "regular": 3 * faces - transition, "transition": transition,
                     "quad": if is_last { faces } else { 0 }, "gregory_quad": 0, "gregory_triangle": 0,
+                    "table": 0,
                 });
                 assert_eq!(level, &expected, "{} level {index} of {depth}", path.display());
             }

@@ -109,7 +109,7 @@ fn isolated_vertices_each_have_their_depth_with_one_regular_and_two_transition_p
     let sectors = |of: fn(Pole) -> u32| poles.iter().map(|&pole| pole.valence * of(pole)).sum::<u32>();
     let expected = json!({
         "regular": sectors(|pole| pole.depth + 3), "transition": sectors(|pole| 2 * pole.depth),
-        "quad": sectors(|_| 1), "gregory_quad": 0, "gregory_triangle": 0, "truncated": 0
+        "quad": sectors(|_| 1), "gregory_quad": 0, "gregory_triangle": 0, "table": 0, "truncated": 0
     });
     assert_eq!(frame["patches"], expected);
     for (pole, mut found) in poles.iter().zip(triangles) {
