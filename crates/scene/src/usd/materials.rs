@@ -6,6 +6,7 @@ use openusd::usd;
 
 use super::attributes::Attributes;
 use super::convert;
+use super::guard::Stage;
 use super::network::{self, Source};
 use super::textures::Textures;
 use super::walk::Tree;
@@ -17,7 +18,7 @@ const BINDINGS: [&str; 2] = ["material:binding:preview", "material:binding"];
 
 /// Materials that are bound, each once.
 pub struct Materials<'a> {
-    stage: &'a usd::Stage,
+    stage: &'a Stage,
     pub textures: Textures,
     pub materials: Vec<Material>,
     /// Texture coordinates that each names.
@@ -27,14 +28,14 @@ pub struct Materials<'a> {
 
 /// Reads one shader's inputs.
 struct Surface<'a, 'b> {
-    stage: &'a usd::Stage,
+    stage: &'a Stage,
     shader: &'b usd::Prim,
     textures: &'b mut Textures,
     uv_name: Option<String>,
 }
 
 impl<'a> Materials<'a> {
-    pub fn new(stage: &'a usd::Stage) -> Self {
+    pub fn new(stage: &'a Stage) -> Self {
         Self {
             stage,
             textures: Textures::default(),
@@ -81,7 +82,7 @@ impl<'a> Materials<'a> {
         if let Some(&known) = self.known.get(path) {
             return Ok(known);
         }
-        let prim = self.stage.prim(path);
+        let prim = self.stage.prim(path)?;
         let surface = network::source(self.stage, &prim, "outputs:surface")?;
         let made = match surface {
             Source::Output(shader, _) if network::identifier(&shader)? == "UsdPreviewSurface" => {

@@ -9,6 +9,7 @@ use super::cage::{self, Cage};
 use super::convert;
 use super::faces::{Faces, below};
 use super::materials::Materials;
+use super::shared;
 use super::skeleton::Skeleton;
 use super::skin::Skins;
 use super::walk::{Item, Tree};
@@ -39,6 +40,8 @@ pub struct Meshes {
     pub instances: Vec<Instance>,
     /// What prims in prototypes have become; none if they have no faces.
     known: HashMap<String, Option<Known>>,
+    /// And meshes by what they are made of, with the texture coordinates that their materials name.
+    same: HashMap<(String, Vec<String>), Option<Known>>,
 }
 
 #[derive(Clone, Copy)]
@@ -78,13 +81,8 @@ impl Meshes {
         let known = match self.known.get(&item.source) {
             Some(&known) if skeleton.is_none() => known,
             _ => {
-                let uv_names: Vec<String> =
-                    slots.iter().flatten().filter_map(|&slot| materials.uv_names[slot].clone()).collect();
-                let cage = cage::read(&attributes, &uv_names, context.options, warnings)?;
-                let known = cage.map(|cage| self.add(context, item, &subsets, cage)).transpose()?;
-                if let (Some(skeleton), Some(known)) = (skeleton, known) {
-                    self.bind(context, skeleton, &attributes, known.mesh, warnings)?;
-                }
+                let uv_names = slots.iter().flatten().filter_map(|&slot| materials.uv_names[slot].clone()).collect();
+                let known = self.read(context, (item, &subsets), skeleton, uv_names, warnings)?;
                 self.known.insert(item.source.clone(), known);
                 known
             }
@@ -101,6 +99,30 @@ impl Meshes {
         let name = context.tree.nodes[item.node].name.clone();
         self.instances.push(Instance { name, mesh, transform, node: Some(node), materials });
         Ok(())
+    }
+
+    /// Reads a mesh, unless another is the same. `uv_names`: primvars of texture coordinates that its materials name.
+    fn read(
+        &mut self,
+        context: &Context,
+        (item, subsets): (&Item, &[usd::Prim]),
+        skeleton: Option<&Skeleton>,
+        uv_names: Vec<String>,
+        warnings: &mut Warnings,
+    ) -> Result<Option<Known>, Fault> {
+        let opinions = if skeleton.is_some() { None } else { shared::opinions(&item.prim, subsets)? };
+        let same = opinions.map(|opinions| (opinions, uv_names.clone()));
+        if let Some(&known) = same.as_ref().and_then(|same| self.same.get(same)) {
+            return Ok(known);
+        }
+        let attributes = Attributes::new(&item.prim, context.rate);
+        let cage = cage::read(&attributes, &uv_names, context.options, warnings)?;
+        let known = cage.map(|cage| self.add(context, item, subsets, cage)).transpose()?;
+        if let (Some(skeleton), Some(known)) = (skeleton, known) {
+            self.bind(context, skeleton, &attributes, known.mesh, warnings)?;
+        }
+        self.same.extend(same.map(|same| (same, known)));
+        Ok(known)
     }
 
     /// Adds what a skeleton does to a mesh.

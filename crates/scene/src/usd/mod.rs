@@ -16,6 +16,7 @@
 //! | `primvar` | values of vertices, faces and corners |
 //! | `cage` | all of this makes one cage of a mesh |
 //! | `meshes` | cages, and where they stand |
+//! | `shared` | meshes that say the same |
 //! | `instancer` | meshes on points |
 //! | `skeleton`, `skin` | UsdSkel |
 //! | `materials` | UsdPreviewSurface, and what is bound to it |
@@ -36,6 +37,7 @@ mod materials;
 mod meshes;
 mod network;
 mod primvar;
+mod shared;
 mod skeleton;
 mod skin;
 mod tags;
@@ -45,12 +47,11 @@ mod xform;
 
 use std::path::Path;
 
-use openusd::usd;
-
 use crate::gltf::fault::Fault;
 use crate::node::{Node, place_nodes};
 use crate::obj::Warnings;
 use crate::{Error, LoadOptions, Mesh, Scene};
+use guard::Stage;
 use materials::Materials;
 use walk::Tree;
 
@@ -87,17 +88,17 @@ fn misplaced(path: &Path, fault: Fault) -> Error {
 
 fn read(path: &Path, options: &LoadOptions, findings: &guard::Findings) -> Result<Scene, Fault> {
     let stage = open(path, findings)?;
-    let scene = scene(path, &stage, options, findings);
+    let scene = scene(path, &stage, options);
     // What is missing is told before what follows from it.
     stage.composition_errors().iter().try_for_each(layers::check)?;
     scene
 }
 
-fn scene(path: &Path, stage: &usd::Stage, options: &LoadOptions, findings: &guard::Findings) -> Result<Scene, Fault> {
+fn scene(path: &Path, stage: &Stage, options: &LoadOptions) -> Result<Scene, Fault> {
     let mut warnings = Warnings::default();
     let rate = rate(stage)?;
     let is_z_up = is_z_up(stage)?;
-    let mut tree = Tree::read(stage, || findings.bytes(), rate, is_z_up)?;
+    let mut tree = Tree::read(stage, rate, is_z_up)?;
     instancer::expand(&mut tree, rate)?;
     let skeletons = skeleton::expand(stage, &mut tree, rate)?;
     let skins = skin::Skins { stage, skeletons: &skeletons };
@@ -131,22 +132,21 @@ fn scene(path: &Path, stage: &usd::Stage, options: &LoadOptions, findings: &guar
 }
 
 /// First and last moment in seconds, as the stage says.
-fn authored_range(stage: &usd::Stage, rate: f64) -> Option<[f64; 2]> {
+fn authored_range(stage: &Stage, rate: f64) -> Option<[f64; 2]> {
     let authored = stage.has_authored_time_code_range();
     let authored = authored.then(|| [stage.start_time_code() / rate, stage.end_time_code() / rate]);
     authored.filter(|[first, last]| first.is_finite() && last.is_finite() && first <= last)
 }
 
-fn open(path: &Path, findings: &guard::Findings) -> Result<usd::Stage, Fault> {
+fn open(path: &Path, findings: &guard::Findings) -> Result<Stage, Fault> {
     let Some(name) = path.to_str() else {
         return Err(Fault::new("layers", "a path that is not UTF-8", "one that is"));
     };
-    let stage = usd::Stage::builder().resolver(guard::Checked::new(findings)).open(name);
-    stage.map_err(|error| Fault::new("layers", format!("{error:#}"), "a USD file that can be read"))
+    Stage::open(name, findings)
 }
 
 /// Time codes a second.
-fn rate(stage: &usd::Stage) -> Result<f64, Fault> {
+fn rate(stage: &Stage) -> Result<f64, Fault> {
     let rate = stage.time_codes_per_second();
     if rate.is_finite() && rate > 0.0 {
         return Ok(rate);
@@ -154,7 +154,7 @@ fn rate(stage: &usd::Stage) -> Result<f64, Fault> {
     Err(Fault::new("timeCodesPerSecond", format!("{rate}"), "a finite number above 0"))
 }
 
-fn is_z_up(stage: &usd::Stage) -> Result<bool, Fault> {
+fn is_z_up(stage: &Stage) -> Result<bool, Fault> {
     let axis = stage.stage_metadata("upAxis");
     let axis = axis.map_err(|error| Fault::new("upAxis", error.to_string(), "Y or Z"))?.and_then(convert::token);
     match axis.as_deref() {

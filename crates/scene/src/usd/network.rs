@@ -4,6 +4,7 @@ use openusd::sdf::{Path, Value};
 use openusd::usd;
 
 use super::attributes::Attributes;
+use super::guard::Stage;
 use super::textures::Textures;
 use super::{convert, layers};
 use crate::gltf::fault::Fault;
@@ -23,14 +24,14 @@ pub enum Source {
 }
 
 /// Follows an attribute's connections, through the interfaces of materials and node graphs.
-pub fn source(stage: &usd::Stage, prim: &usd::Prim, name: &str) -> Result<Source, Fault> {
+pub fn source(stage: &Stage, prim: &usd::Prim, name: &str) -> Result<Source, Fault> {
     let mut attribute = prim.attribute(name);
     for _ in 0..MAX_STEPS {
         let connections = attribute.connections().map_err(|error| failed(attribute.path(), &error))?;
         let Some(target) = connections.first() else { return Ok(Source::Value(attribute)) };
         let path = target.as_str().to_owned();
         let (owner, name) = path.rsplit_once('.').unwrap_or((&path, ""));
-        let owner = stage.prim(owner);
+        let owner = stage.prim(owner)?;
         let kind = owner.type_name().map_err(|error| failed(target, &error))?;
         if kind.is_some_and(|kind| kind.as_str() == "Shader") && name.starts_with("outputs:") {
             return Ok(Source::Output(owner, name.trim_start_matches("outputs:").to_owned()));
@@ -51,7 +52,7 @@ pub fn identifier(shader: &usd::Prim) -> Result<String, Fault> {
 
 /// An input's own value; none if it has none, or a shader's output.
 pub fn value<T>(
-    stage: &usd::Stage,
+    stage: &Stage,
     prim: &usd::Prim,
     name: &str,
     convert: fn(Value) -> Option<T>,
@@ -62,7 +63,7 @@ pub fn value<T>(
 }
 
 /// Where the asset of an input is; none if it has none.
-fn asset(stage: &usd::Stage, prim: &usd::Prim, name: &str) -> Result<Option<String>, Fault> {
+fn asset(stage: &Stage, prim: &usd::Prim, name: &str) -> Result<Option<String>, Fault> {
     let Source::Value(attribute) = source(stage, prim, &format!("inputs:{name}"))? else { return Ok(None) };
     let value = attribute.get_at::<Value>(usd::TimeCode::EARLIEST);
     let value = value.map_err(|error| failed(attribute.path(), &error))?;
@@ -72,7 +73,7 @@ fn asset(stage: &usd::Stage, prim: &usd::Prim, name: &str) -> Result<Option<Stri
 /// The texture that an input is connected to, with the name of its texture coordinates; none if it is to another shader.
 /// `is_color`: texels are sRGB unless the file says otherwise.
 pub fn texture(
-    stage: &usd::Stage,
+    stage: &Stage,
     (shader, output): (&usd::Prim, &str),
     is_color: bool,
     textures: &mut Textures,
@@ -110,7 +111,7 @@ fn wrap(token: Option<&str>) -> Wrap {
 }
 
 /// The map from texture coordinates to those of a texture, and their name.
-fn coordinates(stage: &usd::Stage, texture: &usd::Prim) -> Result<(DAffine2, String), Fault> {
+fn coordinates(stage: &Stage, texture: &usd::Prim) -> Result<(DAffine2, String), Fault> {
     let mut map = DAffine2::IDENTITY;
     let mut next = (texture.clone(), "inputs:st");
     for _ in 0..MAX_STEPS {

@@ -7,6 +7,7 @@ use openusd::usd;
 
 use super::attributes::Attributes;
 use super::convert;
+use super::guard::Stage;
 use super::walk::Tree;
 use crate::curve::{Curve, Interpolation};
 use crate::gltf::fault::Fault;
@@ -28,7 +29,7 @@ pub struct Skeleton {
 }
 
 /// Adds the joints of all skeletons; returns skeletons by their paths.
-pub fn expand(stage: &usd::Stage, tree: &mut Tree, rate: f64) -> Result<HashMap<String, Skeleton>, Fault> {
+pub fn expand(stage: &Stage, tree: &mut Tree, rate: f64) -> Result<HashMap<String, Skeleton>, Fault> {
     let places: Vec<usize> = (0..tree.items.len()).filter(|&item| tree.items[item].kind == "Skeleton").collect();
     let mut skeletons = HashMap::new();
     for place in places {
@@ -41,11 +42,11 @@ pub fn expand(stage: &usd::Stage, tree: &mut Tree, rate: f64) -> Result<HashMap<
 }
 
 /// What animates a skeleton: the source that it names, or its nearest parent.
-fn animation(stage: &usd::Stage, tree: &Tree, place: usize) -> Result<Option<usd::Prim>, Fault> {
+fn animation(stage: &Stage, tree: &Tree, place: usize) -> Result<Option<usd::Prim>, Fault> {
     for item in std::iter::successors(Some(place), |&item| tree.items[item].parent) {
         let targets = Attributes::new(&tree.items[item].prim, 1.0).targets("skel:animationSource")?;
         if let Some(target) = targets.first() {
-            return Ok(Some(stage.prim(target.as_str())));
+            return stage.prim(target.as_str()).map(Some);
         }
     }
     Ok(None)

@@ -2,11 +2,11 @@
 use std::collections::{BTreeMap, HashMap};
 
 use glam::DAffine3;
-use openusd::usd;
 
 use super::attributes::Attributes;
 use super::convert;
 use super::faces::below;
+use super::guard::Stage;
 use super::skeleton::Skeleton;
 use super::walk::Tree;
 use crate::Deformation;
@@ -20,7 +20,7 @@ const WEIGHTS: &str = "primvars:skel:jointWeights";
 
 /// Skeletons, and how to find what is bound to them.
 pub struct Skins<'a> {
-    pub stage: &'a usd::Stage,
+    pub stage: &'a Stage,
     pub skeletons: &'a HashMap<String, Skeleton>,
 }
 
@@ -76,7 +76,7 @@ impl Skins<'_> {
         vertex_count: usize,
         warnings: &mut Warnings,
     ) -> Result<MorphTarget, Fault> {
-        let prim = self.stage.prim(path);
+        let prim = self.stage.prim(path)?;
         let attributes = Attributes::new(&prim, 1.0);
         let properties = prim.property_names().unwrap_or_default();
         if properties.iter().any(|property| property.as_str().starts_with("inbetweens:")) {

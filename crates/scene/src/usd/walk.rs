@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use openusd::usd;
 
 use super::attributes::Attributes;
+use super::guard::Stage;
 use super::{convert, xform};
 use crate::curve::{Curve, Interpolation};
 use crate::gltf::fault::Fault;
@@ -52,8 +53,8 @@ struct Ahead {
 }
 
 impl Tree {
-    /// Walks through a stage of layers of so many bytes, which grow while it is walked. `rate`: time codes a second.
-    pub fn read(stage: &usd::Stage, bytes: impl Fn() -> u64, rate: f64, is_z_up: bool) -> Result<Self, Fault> {
+    /// Walks through a stage. `rate`: time codes a second.
+    pub fn read(stage: &Stage, rate: f64, is_z_up: bool) -> Result<Self, Fault> {
         let mut tree = Self { nodes: Vec::new(), items: Vec::new(), item_of: HashMap::new() };
         if is_z_up {
             let turn = TransformStep::Matrix(Curve::constant(xform::z_up()));
@@ -61,8 +62,9 @@ impl Tree {
         }
         let mut ahead: Vec<Ahead> = Vec::new();
         let roots = stage.root_prims().map_err(|error| failed("/", &error))?;
-        let roots = roots.iter().map(|name| stage.prim(format!("/{name}").as_str()));
-        ahead.extend(roots.map(|prim| Ahead { prim, parent: None, depth: 0 }));
+        for name in roots {
+            ahead.push(Ahead { prim: stage.prim(format!("/{name}").as_str())?, parent: None, depth: 0 });
+        }
         ahead.reverse();
         let mut cost = 0;
         while let Some(Ahead { prim, parent, depth }) = ahead.pop() {
@@ -76,7 +78,7 @@ impl Tree {
             // Below references in references, every place is composed once for every pair of levels above.
             let levels = places.min(depth as u64);
             cost += places * (1 + places / 32 + levels * levels / 8);
-            let most = MIN_COST + bytes() / BYTES_A_COST;
+            let most = MIN_COST + stage.bytes() / BYTES_A_COST;
             if cost > most {
                 let found = format!("composition that costs {cost} so far");
                 let expected = format!("at most {most} in layers of this size: instanceable prims share theirs");
@@ -91,7 +93,7 @@ impl Tree {
             if PLACELESS.contains(&kind.as_str()) {
                 continue;
             }
-            let children = prim.children().map_err(|error| failed(&path, &error))?;
+            let children = stage.children(&prim)?;
             let item = tree.item(prim, kind, parent, rate)?;
             let children = children.into_iter().map(|prim| Ahead { prim, parent: Some(item), depth: depth + 1 });
             let first = ahead.len();

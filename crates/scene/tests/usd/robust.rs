@@ -96,7 +96,7 @@ fn huge_claims_are_refused() {
 }
 
 /// Layers that other layers name: texts by file name; the first is read.
-fn read_layers(layers: &[(&str, &[u8])]) -> Result<Scene, String> {
+pub fn read_layers(layers: &[(&str, &[u8])]) -> Result<Scene, String> {
     let folder = tempfile::tempdir().unwrap();
     for (name, content) in layers {
         std::fs::write(folder.path().join(name), content).unwrap();
@@ -234,27 +234,31 @@ fn packages_are_read_and_their_layers_checked() {
 }
 
 #[test]
-fn what_composition_multiplies_is_bounded() {
-    // Every level has the next one twice.
-    let level = |n: usize| {
-        format!(
-            "def \"l{n}\" {{ def \"a\" (references = </l{0}>) {{}} def \"b\" (references = </l{0}>) {{}} }}\n",
-            n + 1
-        )
-    };
-    let laughs = format!("{}{}def \"l30\" {{}}\n", mesh_with(""), (0..30).map(level).collect::<String>());
-    let error = read_layers(&[("a.usda", format!("#usda 1.0\n{laughs}").as_bytes())]).unwrap_err();
-    assert!(error.contains("composition that costs"), "{error}");
-    let relocations: String = (0..2000).map(|n| format!("</a{n}/b> : </a{n}/c>, ")).collect();
-    let error = read(&format!("(relocates = {{ {relocations} }})\n{}", mesh_with(""))).unwrap_err().to_string();
-    assert!(error.contains("2000 relocations, expected at most 256"), "{error}");
-    assert_memory();
-}
-
-/// No test of this process has taken more than half a GiB.
-fn assert_memory() {
-    let Ok(status) = std::fs::read_to_string("/proc/self/status") else { return };
-    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).expect("the peak of resident memory");
-    let peak: u64 = peak.trim().trim_end_matches(" kB").parse().unwrap();
-    assert!(peak < 512 << 10, "{peak} KiB");
+fn tuples_have_as_many_elements_as_their_type() {
+    let read = |property: &str| read(&mesh_with(&format!("{property}\n"))).map_err(|error| error.to_string());
+    for (property, found, size) in [
+        ("float3 a = (1, 2)", 2, 3),
+        ("uniform float3[] a = [(1, 2, 3), (1, 2, 3, 4)]", 4, 3),
+        ("texCoord2f[] a = [(1 2)(3)]", 1, 2),
+        ("quatf a = (1, 0, 0)", 3, 4),
+        ("matrix4d a = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1), (0, 0, 0, 1))", 3, 4),
+        ("double3 a.timeSamples = { 0: (1, 2, 3), 1: (1, 2) }", 2, 3),
+        ("bool a = true\nfloat3 scale = (1)", 1, 3),
+        ("float[] a = [nan, inf]\nhalf4[] float2 = [(nan inf), ()]", 2, 4),
+        ("float a = 1 ( customData = { int2 b = (1, 2, 3) } )", 3, 2),
+        ("double a.spline = { bezier, 1: 2; pre (1) }", 1, 2),
+        ("double a.spline = { bezier, loop: (1, 2, 3) }", 3, 5),
+    ] {
+        let error = read(property).unwrap_err();
+        assert!(error.contains(&format!("a tuple of {found}, expected {size} elements")), "{property}: {error}");
+    }
+    for property in [
+        "float3 float2 = (1, 2, 3) ( doc = \"it\" )",
+        "float3[] a = [(1 2 3)(4 5 6),]\nfloat2 b = (nan, inf)",
+        "point3f[] a = [] ( interpolation = \"vertex\" )\nint2 b = (1, 2)",
+        "matrix2d[] a = [((1, 0), (0, 1))]",
+        "double a.spline = { bezier, pre: linear (1), 1: 2; pre (1, 2); post curve (3, 4) }",
+    ] {
+        read(property).unwrap_or_else(|error| panic!("{property}: {error}"));
+    }
 }

@@ -5,14 +5,18 @@
 //! |---|---|
 //! | `resolver` | every layer that is opened is checked first |
 //! | `package` | entries of packages |
+//! | `arcs` | in how many places a prim is looked for |
+//! | `stage` | prims are counted before they are composed |
 //! | `budget` | how much all layers may expand to |
 //! | `text` | nesting and lists of text |
+//! | `tuples` | its tuples |
 //! | `expressions` | variable expressions |
 //! | `crate_file` | header and tables of binary layers |
 //! | `paths` | their tree of paths |
 //! | `values`, `lists`, `kinds` | their values |
 //! | `blocks`, `cursor` | what these are read from |
 //! | `panics` | a thread with room, whose panics are caught |
+mod arcs;
 mod blocks;
 mod budget;
 mod crate_file;
@@ -24,12 +28,15 @@ mod package;
 mod panics;
 mod paths;
 mod resolver;
+mod stage;
 mod text;
+mod tuples;
 mod values;
 
 pub use package::entry;
 pub use panics::{apart, silent};
-pub use resolver::{Checked, Findings};
+pub use resolver::Findings;
+pub use stage::Stage;
 
 use crate::gltf::fault::Fault;
 use budget::Budget;

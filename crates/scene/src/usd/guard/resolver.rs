@@ -10,6 +10,7 @@ use openusd::ar::{
     Asset, DefaultResolver, ResolvedPath, Resolver, is_package_relative_path, split_package_relative_path_outer,
 };
 
+use super::arcs::Arcs;
 use super::budget::Budget;
 use super::{check, package};
 use crate::Error;
@@ -36,6 +37,9 @@ struct State {
     /// Of all layers that were read.
     bytes: u64,
     checked: HashSet<PathBuf>,
+    arcs: Arcs,
+    /// The prim that is composed, if one is.
+    prim: Option<String>,
     /// A layer is opened to see what it is, and then to be read.
     last: Option<(PathBuf, Arc<[u8]>)>,
     /// The first.
@@ -46,13 +50,29 @@ impl Findings {
     /// Of the layers of a file.
     pub fn of(path: &Path) -> Self {
         let root = (path.to_owned(), path.canonicalize().unwrap_or_else(|_| path.to_owned()));
-        let state = State { root, budget: Budget::new(), bytes: 0, checked: HashSet::new(), last: None, error: None };
+        let state = State {
+            root,
+            budget: Budget::new(),
+            bytes: 0,
+            checked: HashSet::new(),
+            arcs: Arcs::default(),
+            prim: None,
+            last: None,
+            error: None,
+        };
         Self(Rc::new(RefCell::new(state)))
     }
 
     /// How many bytes all layers have so far.
     pub fn bytes(&self) -> u64 {
         self.0.borrow().bytes
+    }
+
+    /// Refuses a prim that is composed of too many places. It is what is composed from now on.
+    pub fn check_places(&self, path: &str) -> Result<(), Fault> {
+        let mut state = self.0.borrow_mut();
+        state.prim = Some(path.to_owned());
+        state.arcs.check(&state.root.1, path)
     }
 
     /// What is wrong with a layer, if anything is.
@@ -68,8 +88,8 @@ impl Checked {
 }
 
 impl State {
-    fn open(&mut self, path: &Path) -> Result<Arc<[u8]>, Error> {
-        let path = if path == self.root.1 { &self.root.0.clone() } else { path };
+    fn open(&mut self, resolved: &Path) -> Result<Arc<[u8]>, Error> {
+        let path = if resolved == self.root.1 { &self.root.0.clone() } else { resolved };
         if let Some((_, bytes)) = self.last.as_ref().filter(|(last, _)| last == path) {
             return Ok(bytes.clone());
         }
@@ -79,6 +99,10 @@ impl State {
             check(&bytes, &mut self.budget).map_err(|fault| misplaced(path, fault))?;
             self.bytes += bytes.len() as u64;
             self.checked.insert(path.to_owned());
+            self.arcs.add(resolved, &bytes);
+            if let Some(prim) = &self.prim {
+                self.arcs.check(&self.root.1, prim).map_err(|fault| misplaced(&self.root.0, fault))?;
+            }
         }
         let bytes: Arc<[u8]> = bytes.into();
         self.last = Some((path.to_owned(), bytes.clone()));

@@ -5,6 +5,7 @@ use openusd::usda::token::Token;
 
 use super::budget::Budget;
 use super::expressions::Expressions;
+use super::tuples::Tuples;
 use crate::gltf::fault::Fault;
 
 /// Deepest nesting of brackets, and most names in a path.
@@ -54,6 +55,7 @@ pub fn check(text: &str, budget: &mut Budget) -> Result<(), Fault> {
         named: Named::Nothing,
         is_after_colon: false,
     };
+    let mut tuples = Tuples::default();
     let (mut line, mut counted) = (1, 0);
     for (token, span) in Token::lexer(text).spanned() {
         line += text.as_bytes()[counted..span.start].iter().filter(|&&byte| byte == b'\n').count();
@@ -64,6 +66,7 @@ pub fn check(text: &str, budget: &mut Budget) -> Result<(), Fault> {
             return Err(Fault::new(place, format!("{found:?}"), "text that is USD"));
         };
         scan.token(&token, &place)?;
+        tuples.token(&token, &place)?;
     }
     Ok(())
 }

@@ -1,0 +1,103 @@
+//! What composition multiplies is bounded, and shared where it can be.
+use crate::common::{mesh_with, read};
+use crate::robust::read_layers;
+
+#[test]
+fn what_composition_multiplies_is_bounded() {
+    // Every level has the next one twice.
+    let level = |n: usize| {
+        format!(
+            "def \"l{n}\" {{ def \"a\" (references = </l{0}>) {{}} def \"b\" (references = </l{0}>) {{}} }}\n",
+            n + 1
+        )
+    };
+    let laughs = format!("{}{}def \"l30\" {{}}\n", mesh_with(""), (0..30).map(level).collect::<String>());
+    let error = read_layers(&[("a.usda", format!("#usda 1.0\n{laughs}").as_bytes())]).unwrap_err();
+    assert!(error.contains("composition that costs"), "{error}");
+    let relocations: String = (0..2000).map(|n| format!("</a{n}/b> : </a{n}/c>, ")).collect();
+    let error = read(&format!("(relocates = {{ {relocations} }})\n{}", mesh_with(""))).unwrap_err().to_string();
+    assert!(error.contains("2000 relocations, expected at most 256"), "{error}");
+    assert_memory();
+}
+
+#[test]
+fn references_that_double_are_refused_before_they_are_composed() {
+    /// Two classes a level, each of which leads to both of the next.
+    fn doubling(arc: &str, levels: usize, class: impl Fn(&str) -> String) -> String {
+        let level = |n: usize| {
+            let to = format!("[</A{0}{BELOW}>, </B{0}{BELOW}>]", n + 1);
+            ["A", "B"].map(|side| format!("class \"{side}{n}\" {}\n", class(&format!("({arc} = {to})")))).concat()
+        };
+        let last = ["A", "B"].map(|side| format!("class \"{side}{levels}\" {}\n", class(""))).concat();
+        format!("{}{last}", (0..levels).map(level).collect::<String>())
+    }
+    const BELOW: &str = "/x/y";
+    let below = |arcs: &str| format!("{{ def \"x\" {{ def \"y\" {arcs} {{}} }} }}");
+    let read = |content: &str| read_layers(&[("a.usda", format!("#usda 1.0\n{}{content}", mesh_with("")).as_bytes())]);
+    let multiplied = "a prim composed of more than 4000 places, expected fewer: references of references multiply";
+    for arc in ["references", "payload", "inherits", "specializes"] {
+        for levels in [14, 40] {
+            let root = "def \"r\" (references = </A0/x/y>) {}\n";
+            let error = read(&format!("{root}{}", doubling(arc, levels, below))).unwrap_err();
+            assert!(error.contains(multiplied), "{arc}, {levels}: {error}");
+        }
+        read(&doubling(arc, 5, below)).unwrap();
+    }
+    // Below what no walk visits: inside of a material that a mesh is bound to.
+    let shader =
+        format!("{}def Material \"m\" {{ def \"s\" (references = </A0/x/y>) {{}}\n", doubling("references", 30, below));
+    let bound = format!("{shader} token outputs:surface.connect = </m/s.outputs:surface> }}\n");
+    let mesh = mesh_with("rel material:binding = </m>\n");
+    let error = read_layers(&[("a.usda", format!("#usda 1.0\n{mesh}{bound}").as_bytes())]).unwrap_err();
+    assert!(error.contains(multiplied), "{error}");
+    // All lead to all: no two ways are the same.
+    let all: String = (0..12).map(|n| format!("</K{n}>, ")).collect();
+    let clique: String = (0..12).map(|n| format!("class \"K{n}\" (references = [{all}]) {{}}\n")).collect();
+    let error = read(&clique).unwrap_err();
+    assert!(error.contains(multiplied), "{error}");
+    // Of a set of variants one is selected, however many there are.
+    let tree = doubling("references", 7, below);
+    let variants: String = (0..40).map(|n| format!("\"v{n}\" (references = </A0/x/y>) {{}}\n")).collect();
+    let set = format!("{tree}def \"s\" (variants = {{ string v = \"v3\" }} prepend variantSets = \"v\") {{");
+    read(&format!("{set} variantSet \"v\" = {{ {variants} }} }}")).unwrap();
+}
+
+#[test]
+fn layers_that_double_are_refused_before_they_are_composed() {
+    let layer = |n: usize| {
+        let to = |path: &str| format!("@./l{}.usda@{path}", n + 1);
+        let text = format!("(defaultPrim = \"A\")\ndef \"A\" (references = [{}, {}]) {{}}\n", to(""), to("</B>"));
+        format!("#usda 1.0\n{text}def \"B\" (payload = {}) {{}}\n", to(""))
+    };
+    let layers: Vec<(String, String)> = (0..24).map(|n| (format!("l{n}.usda"), layer(n))).collect();
+    let layers: Vec<(&str, &[u8])> = layers.iter().map(|(name, text)| (name.as_str(), text.as_bytes())).collect();
+    let error = read_layers(&layers).unwrap_err();
+    assert!(error.contains("more than 4000 places"), "{error}");
+}
+
+#[test]
+fn references_to_a_large_mesh_share_it() {
+    let large: String = (0..20_000).map(|n| format!("({n}, {}, {})", n % 7, n % 5)).collect::<Vec<_>>().join(", ");
+    let faces: String = (0..19_998).map(|n| format!("{n}, {}, {}", n + 1, n + 2)).collect::<Vec<_>>().join(", ");
+    let counts = vec!["3"; 19_998].join(", ");
+    let mesh = format!(
+        "def Mesh \"m\" {{ point3f[] points = [{large}]\nint[] faceVertexIndices = [{faces}]\nint[] faceVertexCounts = [{counts}]\n}}"
+    );
+    let places: String = (0..400).map(|n| format!("def \"r{n}\" (references = </big>) {{ double3 xformOp:translate = ({n}, 0, 0)\nuniform token[] xformOpOrder = [\"xformOp:translate\"] }}\n")).collect();
+    // One of them has a colour of its own.
+    let other =
+        "def \"other\" (references = </big>) { over \"m\" { color3f[] primvars:displayColor = [(1, 0, 0)] } }\n";
+    let scene = read(&format!("class \"big\" {{ {mesh} }}\n{places}{other}")).unwrap();
+    assert_eq!((scene.meshes.len(), scene.instances.len()), (2, 401));
+    assert_eq!(scene.meshes[0].control_mesh.positions, scene.meshes[1].control_mesh.positions);
+    assert_eq!(scene.instances[399].transform.translation.x, 399.0);
+    assert_memory();
+}
+
+/// No test of this process has taken more than half a GiB.
+fn assert_memory() {
+    let Ok(status) = std::fs::read_to_string("/proc/self/status") else { return };
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).expect("the peak of resident memory");
+    let peak: u64 = peak.trim().trim_end_matches(" kB").parse().unwrap();
+    assert!(peak < 512 << 10, "{peak} KiB");
+}
