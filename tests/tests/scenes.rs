@@ -14,7 +14,7 @@ use planish_tests::folder::{contents, temporary};
 use planish_tests::layers::{Layers, transform};
 use planish_tests::parallel::check_all;
 use planish_tests::ply::{Dump, Vertex};
-use planish_tests::program::Planish;
+use planish_tests::program::{FAILED, Planish};
 use planish_tests::repository::{planish, root, scene};
 
 /// A scene of ours, of any format.
@@ -211,6 +211,32 @@ fn cryptomattes_tell_the_instances_that_the_layer_of_objects_does() {
     let materials: Vec<String> = scene.materials.iter().map(|material| material.name.clone()).collect();
     let told = self::manifest(&out, "CryptoMaterial");
     assert!(materials.iter().all(|name| told.contains_key(name)), "{told:?}");
+}
+
+#[test]
+fn a_scene_s_own_environment_is_brightened() {
+    let folder = temporary();
+    let shown = |flags: &str| {
+        let out = folder.path().join("sky.exr");
+        let view = "--size 24x18 --tess 2 --shadow-map-size 16 --eye 0,1,9 --target 0,9,0";
+        Planish::render(&file("lamp.usda"), &out).flags(view).flags(flags).run().silent_success().unwrap();
+        let layers = Layers::read(&out);
+        ["R", "G", "B", "A"].map(|channel| layers.floats(channel)[0])
+    };
+    // The light's intensity times its colour, in half floats; the view's first pixel is above the scene.
+    let sky = [0.2, 0.225, 0.25, 1.0];
+    let is_near = |pixel: [f32; 4], expected: [f32; 4]| pixel.iter().zip(expected).all(|(a, b)| (a - b).abs() < 2e-4);
+    assert!(is_near(shown(""), sky), "{:?}", shown(""));
+    let brighter = sky.map(|c| if c < 1.0 { c * 2.0 } else { c });
+    assert!(is_near(shown("--environment-exposure 1"), brighter));
+    let obj = scene("cube");
+    for flags in ["--show-environment", "--environment-rotation 90", "--environment-exposure -1"] {
+        let outcome = Planish::render(&obj, &folder.path().join("none.png")).flags(flags).run();
+        let message = outcome.one_error(FAILED).unwrap();
+        assert!(
+            message.ends_with("no environment to turn, brighten or show, expected one in the scene or --environment")
+        );
+    }
 }
 
 /// The manifest of a Cryptomatte in a file's header.

@@ -461,17 +461,17 @@ pub struct LightArguments {
     /// Image of all around, in latitude and longitude, .exr or .hdr, instead of the scene's
     #[arg(long, value_name = "FILE")]
     pub environment: Option<PathBuf>,
-    /// Turns it about the y axis, in degrees, counter-clockwise seen from above
-    #[arg(long, value_name = "DEG", default_value_t = 0.0, value_parser = values::finite, allow_hyphen_values = true, requires = "environment")]
+    /// Turns the environment about the y axis, in degrees, counter-clockwise seen from above
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, value_parser = values::finite, allow_hyphen_values = true)]
     pub environment_rotation: f64,
-    /// Makes it brighter, in stops
-    #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = values::stops, allow_hyphen_values = true, requires = "environment")]
+    /// Makes the environment brighter, in stops
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = values::stops, allow_hyphen_values = true)]
     pub environment_exposure: f32,
     /// Texels of the side of a light's shadow map
     #[arg(long, value_name = "N", default_value_t = 2048, value_parser = RangedU64ValueParser::<u32>::new().range(16..=8192))]
     pub shadow_map_size: u32,
-    /// It is seen behind the scene, where the alpha is 0
-    #[arg(long, requires = "environment")]
+    /// The environment is seen behind the scene, which it covers: the alpha is 1 there
+    #[arg(long)]
     pub show_environment: bool,
 }
 

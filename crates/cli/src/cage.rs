@@ -68,19 +68,27 @@ impl Cage {
         Ok(())
     }
 
-    /// Lights the scene by the environment that is asked for.
-    pub fn light(&mut self, arguments: &LightArguments) {
-        let Some(file) = &arguments.environment else { return };
-        let image = self.scene.images.len();
-        self.scene
-            .images
-            .push(ImageSource { name: file.display().to_string(), content: ImageContent::File(file.clone()) });
-        self.scene.environment = Some(Environment {
-            image: Some(image),
-            color: [arguments.environment_exposure.exp2(); 3],
-            to_world: DAffine3::from_rotation_y(arguments.environment_rotation.to_radians()),
-            is_visible: arguments.show_environment,
-        });
+    /// Lights the scene by the environment that is asked for, or by its own, turned, brightened and shown as asked for.
+    pub fn light(&mut self, arguments: &LightArguments) -> Result<()> {
+        if let Some(file) = &arguments.environment {
+            let image = self.scene.images.len();
+            let content = ImageContent::File(file.clone());
+            self.scene.images.push(ImageSource { name: file.display().to_string(), content });
+            let (color, to_world) = ([1.0; 3], DAffine3::IDENTITY);
+            self.scene.environment = Some(Environment { image: Some(image), color, to_world, is_visible: false });
+        }
+        let LightArguments { environment_rotation, environment_exposure, show_environment, .. } = *arguments;
+        if let Some(environment) = &mut self.scene.environment {
+            environment.color = environment.color.map(|c| c * environment_exposure.exp2());
+            environment.to_world = DAffine3::from_rotation_y(environment_rotation.to_radians()) * environment.to_world;
+            environment.is_visible |= show_environment;
+        } else if show_environment || environment_rotation != 0.0 || environment_exposure != 0.0 {
+            bail!(
+                "{}: found no environment to turn, brighten or show, expected one in the scene or --environment",
+                self.path.display()
+            );
+        }
+        Ok(())
     }
 
     /// Whether any mesh has a displacement map.

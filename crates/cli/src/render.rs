@@ -33,7 +33,7 @@ use crate::values::FrameRate;
 pub fn run(arguments: &RenderArguments, console: &Console) -> Result<()> {
     let mut cage = Cage::load(&arguments.scene, console)?;
     cage.displace(&arguments.displacement, console)?;
-    cage.light(&arguments.light);
+    cage.light(&arguments.light)?;
     let rate = cage.frame_rate(arguments.frames.fps);
     let range = cage.frame_range(arguments.frames.frames, rate);
     check_outputs(arguments, range, console)?;
