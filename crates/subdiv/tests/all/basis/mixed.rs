@@ -155,6 +155,20 @@ fn points_lie_at_their_parameters_inside_a_flat_lattice_of_both() {
 }
 
 #[test]
+fn a_vertex_between_two_quads_and_three_triangles_moves_three_quarters() {
+    let (columns, rows) = (4, 2);
+    let mut mesh = plane(columns, rows);
+    mesh.positions[(rows * (columns + 1) + 2) as usize][2] = 1.0;
+    let (tables, points) = tables(&mesh, Scheme::LoopStam);
+    let range = &tables.levels[1].points;
+    let heights = points[range.start as usize..range.end as usize].iter().map(|point| point[2]);
+    // What stays, and its share of the middles of five edges (twice each) and of two quads, of 2 * 5 + 2 in all.
+    let expected = 0.25 + 0.75 * (5.0 + 2.0 / 4.0) / 12.0;
+    let highest = heights.fold(0.0, f64::max);
+    assert!((highest - expected).abs() < 1e-7, "{highest}, expected {expected}");
+}
+
+#[test]
 fn tables_of_the_schemes_are_not_the_same_where_triangles_and_quads_meet() {
     let mesh = &meshes()[0];
     let of = |scheme: Scheme| Tables::of_basis(mesh, &options(scheme, 1)).expect("tables").basis;
