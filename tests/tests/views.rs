@@ -17,7 +17,7 @@ const WAYS: [&str; 3] = [
     "--edge-pixels 1.5 --size 48x27 --spacing fractional-even",
 ];
 
-/// Every pair of a place and a way, or with `PLANISH_ALL_VIEWS` unset three of them by turns.
+/// Every pair of a place and a way, or with `PLANISH_ALL_VIEWS` unset one or two of them by turns.
 fn cases() -> Vec<(PathBuf, Place, &'static str)> {
     let every = std::env::var_os("PLANISH_ALL_VIEWS").is_some();
     let meshes = [scenes(), models()].concat();
@@ -25,8 +25,10 @@ fn cases() -> Vec<(PathBuf, Place, &'static str)> {
     for (index, mesh) in meshes.into_iter().enumerate() {
         for (p, place) in Place::ALL.into_iter().enumerate() {
             for (w, way) in WAYS.into_iter().enumerate() {
+                // Places by threes, and then one half of the meshes after the other.
                 let turn = (index + p + w) % 3;
-                if every || turn == 0 && (!is_about_rules(&mesh) || p == index / 3 % 3) {
+                let is_in_turn = turn == 0 && (index / 3 + p) % 2 == 0;
+                if every || is_in_turn && (!is_about_rules(&mesh) || p == index / 3 % 3) {
                     cases.push((mesh.clone(), place, way));
                 }
             }
@@ -63,7 +65,13 @@ fn write_dense(mesh: &Path, folder: &Path) -> PathBuf {
 
 #[test]
 fn dumps_of_meshes_with_densities_are_the_limit_surface_and_closed() {
-    let cases: Vec<_> = [scenes(), models()].concat().into_iter().zip(SPACINGS.into_iter().cycle()).collect();
+    let mut cases: Vec<_> = [scenes(), models()].concat().into_iter().zip(SPACINGS.into_iter().cycle()).collect();
+    // Of scenes that differ in rules alone every second.
+    let mut rules = 0;
+    cases.retain(|(mesh, _)| {
+        rules += usize::from(is_about_rules(mesh));
+        !is_about_rules(mesh) || rules.is_multiple_of(2)
+    });
     check_all(&cases, |(mesh, spacing)| {
         let folder = temporary();
         let flags = format!("--tess 3 --spacing {spacing}");
