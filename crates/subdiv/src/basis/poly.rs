@@ -325,7 +325,11 @@ impl Poly {
         let mut faces = Vec::new();
         for vertex in vertices {
             if self.is_whole[vertex as usize] {
-                faces.extend(self.fan(vertex, None).spokes.iter().map(|&spoke| self.face[spoke as usize]));
+                // As a fan has them; this is asked for so often that making one would count.
+                let start = self.start[vertex as usize];
+                let next = |&spoke: &u32| Some(self.twin(self.previous(spoke))).filter(|&h| h < CUT && h != start);
+                let spokes = std::iter::successors(Some(start).filter(|&h| h != BORDER), next);
+                faces.extend(spokes.map(|spoke| self.face[spoke as usize]));
             } else {
                 // Several fans: all that is there.
                 let at = (0..self.origin.len()).filter(|&h| self.origin[h] == vertex);
