@@ -9,6 +9,8 @@ use planish_tests::ply::Dump;
 use planish_tests::program::{Outcome, Planish};
 use planish_tests::repository::{scene, scheme_scene};
 
+/// What becomes of a file's bytes.
+type Spoil<'a> = &'a dyn Fn(&[u8]) -> Vec<u8>;
 /// Configurations read and built, and the dump's triangles.
 type Run = (u64, u64, Vec<u8>);
 
@@ -63,7 +65,7 @@ fn spoilt_files_are_built_and_written_anew() {
     let whole = contents(folder.path());
     assert_eq!(whole.len() as u64, count);
     let other = whole.values().next().unwrap().clone();
-    let spoils: [(&str, &dyn Fn(&[u8]) -> Vec<u8>); 6] = [
+    let spoils: [(&str, Spoil); 6] = [
         ("empty", &|_| Vec::new()),
         ("cut off in the head", &|bytes| bytes[..20].to_vec()),
         ("cut off", &|bytes| bytes[..bytes.len() - 1].to_vec()),
