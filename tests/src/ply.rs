@@ -103,6 +103,14 @@ impl Dump {
         Ok(Self { properties, bytes, vertices })
     }
 
+    /// The bytes of all triangles' vertices, sorted by them: patches are listed in any order.
+    pub fn sorted_triangles(&self) -> Vec<u8> {
+        let bytes = &self.bytes[self.vertices.clone()];
+        let mut triangles: Vec<&[u8]> = bytes.chunks_exact(3 * self.properties.vertex_bytes()).collect();
+        triangles.sort_unstable();
+        triangles.concat()
+    }
+
     /// All vertices, three a triangle.
     pub fn vertices(&self) -> impl ExactSizeIterator<Item = Vertex> {
         let properties = self.properties;

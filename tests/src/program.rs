@@ -16,6 +16,9 @@ pub const FAILED: i32 = 1;
 /// Exit status of a command line that makes no sense.
 pub const WRONG_USAGE: i32 = 2;
 
+/// Where tables are kept for another run. Those of tests are built, unless they ask for a folder.
+const TABLE_CACHE: &str = "PLANISH_TABLE_CACHE";
+
 /// A command line of `planish`.
 pub struct Planish {
     command: Command,
@@ -25,7 +28,9 @@ pub struct Planish {
 impl Planish {
     /// One of planish's commands.
     pub fn new(command: &str) -> Self {
-        Self { command: Command::new(repository::planish()), line: "planish".to_owned() }.flags(command)
+        let mut planish = Command::new(repository::planish());
+        planish.env(TABLE_CACHE, "none");
+        Self { command: planish, line: "planish".to_owned() }.flags(command)
     }
 
     /// `planish dump MESH -o OUT`, under validation.
@@ -64,6 +69,13 @@ impl Planish {
     pub fn env(mut self, name: &str, value: impl AsRef<OsStr>) -> Self {
         self.line = format!("{name}={} {}", value.as_ref().display(), self.line);
         self.command.env(name, value);
+        self
+    }
+
+    /// Keeps tables where it would for a user.
+    #[must_use]
+    pub fn keeping_tables(mut self) -> Self {
+        self.command.env_remove(TABLE_CACHE);
         self
     }
 

@@ -233,9 +233,9 @@ pub struct BenchArguments {
     #[arg(long, conflicts_with_all = ["levels", "cpu", "path", "cameras", "creases", "seams"])]
     pub gregory: bool,
     /// Time method table with flat, phong and pn, fas and dfas in turns instead, with nothing culled, at tess factors 4, 16 and 32 or those given
-    #[arg(long, conflicts_with_all = ["levels", "cpu", "path", "cameras", "creases", "seams", "gregory"])]
+    #[arg(long, conflicts_with_all = ["levels", "path", "cameras", "creases", "seams", "gregory"])]
     pub tables: bool,
-    /// Time the building of tables for these levels instead, on one thread of the CPU; needs no device
+    /// Time the building of tables for these levels instead, on one thread of the CPU; needs no device. With --tables the building of those, and reading them from a cache
     #[arg(long)]
     pub cpu: bool,
     /// No irregularity is isolated deeper
@@ -336,6 +336,9 @@ pub struct SurfaceArguments {
     /// How weights of method table are stored
     #[arg(long, value_enum, default_value_t = TableWeightsName::Float)]
     pub table_weights: TableWeightsName,
+    /// Folder with tables of method table that were made before, or none [default: planish/tables in $XDG_CACHE_HOME, else in ~/.cache]
+    #[arg(long, value_name = "DIR|none", env = "PLANISH_TABLE_CACHE")]
+    pub table_cache: Option<PathBuf>,
     /// Trade bitwise equal seams for speed
     #[arg(long)]
     pub no_watertight: bool,

@@ -19,6 +19,7 @@ use crate::moment::Moment;
 use crate::offline::{Drawn, Plan, Session, check_validation, open_device};
 use crate::render::check_placeholder;
 use crate::stats::{FrameStats, Stats, StatsOutput};
+use crate::table_cache::TableCache;
 use crate::values::FrameRate;
 
 /// Captured parts that may wait for the disk.
@@ -36,7 +37,8 @@ pub fn run(arguments: &DumpArguments, console: &Console) -> Result<()> {
     stats_output.check([arguments.output.as_path()].into_iter())?;
     let plan = Plan::unseen(&cage, &arguments.surface, &arguments.view, rate, range)?;
     let device = open_device(&arguments.device, console)?;
-    let mut session = Session::new(&device, &cage, &plan, console)?;
+    let cache = TableCache::new(arguments.surface.table_cache.as_deref(), console);
+    let mut session = Session::new(&device, &cage, &plan, &cache, console)?;
     if cage.has_uv() {
         session.surface.set_tex_coords(&device, &cage.meshes())?;
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use anyhow::{Context, Result};
 use planish_render::spokes::{FACE_BYTES, RIVAL_SPOKE_BYTES, SPOKE_BYTES, STENCIL_BYTES};
-use planish_render::{Preprocessed, SurfaceDesc, SurfaceMethod, TableWeights, preprocess};
+use planish_render::{Preprocessed, SurfaceDesc, SurfaceMethod, TableWeights, preprocess_cached};
 use planish_subdiv::edits::deepest_level;
 use planish_subdiv::mesh::{
     BoundaryInterpolation, Creasing, FaceVaryingInterpolation, TriangleSubdivision, VertexInterpolation,
@@ -21,18 +21,24 @@ use crate::console::{Console, print_output};
 use crate::offline::{Plan, check_gregory};
 use crate::scene_info::SceneInfo;
 use crate::stats::method_name;
+use crate::table_cache::TableCache;
 use crate::text_table::{TextTable, bytes_text, milliseconds_text};
 
 /// Runs the command.
 pub fn run(arguments: &InfoArguments, console: &Console) -> Result<()> {
     let cage = Cage::load(&arguments.scene, console)?;
     let desc = surface_desc(arguments, &cage)?;
-    let mut made = preprocess(&cage.meshes(), &desc).with_context(|| cage.path().display().to_string())?;
+    let cache = TableCache::new(arguments.surface.table_cache.as_deref(), console);
+    let preprocess = || preprocess_cached(&cage.meshes(), &desc, &cache);
+    let mut made = preprocess().with_context(|| cage.path().display().to_string())?;
     let (mut topology, mut tables) = (vec![made.times.topology], vec![made.times.tables]);
     for _ in 1..arguments.repeat {
-        made = preprocess(&cage.meshes(), &desc)?;
+        let counts = made.basis_counts;
+        made = preprocess()?;
         topology.push(made.times.topology);
         tables.push(made.times.tables);
+        // What the first time found.
+        made.basis_counts = counts;
     }
     (made.times.topology, made.times.tables) = (median(topology), median(tables));
     let info = Info::new(&cage, &desc, &made, arguments.fixed_set);
@@ -127,6 +133,9 @@ struct BasisInfo {
     weight_bytes: usize,
     /// Of faces, edges between them and tangents too, as they are stored.
     bytes: u64,
+    /// How many configurations, of faces, edges and vertices, were read from the cache, and how many were built.
+    read: u64,
+    built: u64,
     /// The paper's set for any cage, if it was asked for: one extraordinary vertex of valence 3 to 18, inside and on boundaries.
     #[serde(skip_serializing_if = "Option::is_none")]
     fixed_set: Option<FixedSetInfo>,
@@ -307,7 +316,7 @@ impl RefinementInfo {
                 ("points", point_bytes * u64::from(tables.point_count())),
             ]),
             gregory_stencils: StencilInfo::new(&tables.gregory),
-            basis: BasisInfo::new(desc, tables, wants_fixed_set),
+            basis: BasisInfo::new(desc, made, wants_fixed_set),
             levels: levels.collect(),
         }
     }
@@ -326,6 +335,7 @@ impl RefinementInfo {
             let own =
                 format!("{} configurations of faces, {}", basis.configurations, bytes_text(basis.weight_bytes as u64));
             line("  tables", format!("{own} of weights; with edges and tangents {}", bytes_text(basis.bytes)));
+            line("", format!("of faces, edges and vertices {} read from the cache, {} built", basis.read, basis.built));
             if let Some(fixed) = &basis.fixed_set {
                 let (count, bytes) = (fixed.configurations, bytes_text(fixed.weight_bytes as u64));
                 line(
@@ -379,7 +389,8 @@ impl RefinementInfo {
 }
 
 impl BasisInfo {
-    fn new(desc: &SurfaceDesc, tables: &Tables, wants_fixed_set: bool) -> Option<Self> {
+    fn new(desc: &SurfaceDesc, made: &Preprocessed, wants_fixed_set: bool) -> Option<Self> {
+        let tables = &made.tables;
         let options = desc.basis_options().filter(|options| options.has_weights)?;
         let own = TableSet::of(tables);
         let fixed = if wants_fixed_set { fixed_set(options.scheme, options.level).ok() } else { None };
@@ -388,6 +399,8 @@ impl BasisInfo {
             configurations: own.configurations,
             weight_bytes: own.bytes(),
             bytes: basis_bytes(tables, desc.table_weights),
+            read: made.basis_counts.read,
+            built: made.basis_counts.built,
             fixed_set: fixed.map(|set| FixedSetInfo { configurations: set.configurations, weight_bytes: set.bytes() }),
         })
     }

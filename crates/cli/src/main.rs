@@ -11,6 +11,7 @@
 //! | `shading` | materials and lights of a scene, and frames shaded by them |
 //! | `image` | a frame's images, read back |
 //! | `stats` | the JSON of `--stats` |
+//! | `table_cache` | tables that were made before |
 //! | `render`, `dump`, `compare`, `info`, `bench`, `devices` | the commands |
 
 mod aov;
@@ -38,6 +39,7 @@ mod scene_info;
 mod shading;
 mod split;
 mod stats;
+mod table_cache;
 mod text_table;
 mod values;
 

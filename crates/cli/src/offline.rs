@@ -9,12 +9,13 @@ use planish_render::density::{MAX_UNCUT_DENSITY, isolation_level, largest_densit
 use planish_render::{
     Culling, Density, DrawOptions, DrawPasses, EndCap, FrameCamera, FrameNeeds, FrameOptions, FrameStages,
     GregoryPoints, Layers, ObjectDesc, Selection, Spacing, Status, Surface, SurfaceDesc, SurfaceMethod, TableNormals,
-    TableWeights, Targets, View, preprocess,
+    TableWeights, Targets, View, preprocess_cached,
 };
 use planish_scene::{Camera, Lens, Pose};
 use planish_subdiv::ControlMesh;
 use planish_subdiv::refine::CreasePatches;
 use planish_subdiv::scheme::Scheme;
+use planish_subdiv::tables::{BasisCache, BasisCounts};
 
 use crate::args::{DeviceArguments, SurfaceArguments, ViewArguments};
 use crate::cage::{Cage, milliseconds};
@@ -286,6 +287,8 @@ pub struct Session {
     pub surface: Surface,
     pub camera: FrameCamera,
     pub options: FrameOptions,
+    /// Where tables of configurations came from, of method table.
+    pub basis_counts: BasisCounts,
     needs: FrameNeeds,
     hides_backs: bool,
     stages: FrameStages,
@@ -296,8 +299,8 @@ pub struct Session {
 }
 
 impl Session {
-    /// Builds the scene's tables and uploads them.
-    pub fn new(device: &Device, cage: &Cage, plan: &Plan, console: &Console) -> Result<Self> {
+    /// Builds the scene's tables, as far as the cache does not have them, and uploads them.
+    pub fn new(device: &Device, cage: &Cage, plan: &Plan, cache: &dyn BasisCache, console: &Console) -> Result<Self> {
         let named = || cage.path().display().to_string();
         if plan.desc.method == SurfaceMethod::Uniform && (plan.objects.len() != 1 || plan.needs.placed) {
             bail!("{}: method uniform draws one mesh where it is: expected no instances", named());
@@ -312,7 +315,8 @@ impl Session {
                 .warn(format_args!("{}: texture coordinates are those of Catmull-Clark's scheme: left out", named()));
         }
         check_motion(cage, plan).with_context(named)?;
-        let made = preprocess(&cage.meshes(), &plan.desc).with_context(named)?;
+        let made = preprocess_cached(&cage.meshes(), &plan.desc, cache).with_context(named)?;
+        let basis_counts = made.basis_counts;
         let mut surface = Surface::new(device, &cage.meshes(), &plan.objects, plan.desc, made).with_context(named)?;
         cage.displace_surface(device, &mut surface)?;
         deform_surface(device, &mut surface, cage, plan.needs.moves)?;
@@ -324,11 +328,16 @@ impl Session {
             plan.objects.len(),
             surface.tables().last_level,
         ));
+        if basis_counts != BasisCounts::default() {
+            let BasisCounts { read, built } = basis_counts;
+            console.explain(format_args!("tables of {read} configurations read from the cache, {built} built"));
+        }
         Ok(Self {
             device: device.clone(),
             surface,
             camera: plan.frame_camera,
             options: plan.options,
+            basis_counts,
             needs: plan.needs,
             hides_backs: plan.hides_backs(),
             stages,

@@ -27,6 +27,7 @@ use crate::sampling::{PixelFilter, Sample, samples};
 use crate::shading::{self, SceneShading};
 use crate::split::Split;
 use crate::stats::{FrameStats, GpuStats, Stats, StatsOutput};
+use crate::table_cache::TableCache;
 use crate::values::FrameRate;
 
 /// Runs the command.
@@ -138,7 +139,8 @@ impl<'a> Renderer<'a> {
         }
         let shutter = shutter(arguments, cage, &plan, rate);
         let device = open_device(&arguments.device, console)?;
-        let mut session = Session::new(&device, cage, &plan, console)?;
+        let cache = TableCache::new(arguments.surface.table_cache.as_deref(), console);
+        let mut session = Session::new(&device, cage, &plan, &cache, console)?;
         session.surface.set_crop(crop.part());
         let layers = drawn_layers(aovs);
         let plain = if is_shaded && layers == Layers::None {

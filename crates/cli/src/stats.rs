@@ -28,6 +28,7 @@ pub struct Stats {
     pub mesh: MeshStats,
     pub preprocess_ms: PreprocessStats,
     pub memory_bytes: MemoryStats,
+    pub table_configurations: TableStats,
     pub frames: Vec<FrameStats>,
     /// Where the time of all samples went, of `render`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -76,6 +77,13 @@ pub struct MemoryStats {
     pub points: u64,
     pub lists: u64,
     pub images: u64,
+}
+
+/// Where tables of configurations came from, of method table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct TableStats {
+    pub read: u64,
+    pub built: u64,
 }
 
 /// One frame.
@@ -237,6 +245,7 @@ impl Stats {
                 lists: memory.lists,
                 images: image_bytes,
             },
+            table_configurations: TableStats { read: session.basis_counts.read, built: session.basis_counts.built },
             frames,
             split_ms: None,
         }
@@ -316,6 +325,7 @@ mod tests {
             "mesh",
             "preprocess_ms",
             "memory_bytes",
+            "table_configurations",
             "frames",
         ]);
         assert_eq!(keys(&json), expected);
@@ -323,6 +333,7 @@ mod tests {
         assert_eq!(keys(&json["mesh"]), ["extraordinary_vertices", "faces", "irregular_faces", "vertices"]);
         assert_eq!(keys(&json["preprocess_ms"]), ["load", "pipelines", "tables", "topology", "upload"]);
         assert_eq!(keys(&json["memory_bytes"]), ["images", "lists", "points", "tables"]);
+        assert_eq!(keys(&json["table_configurations"]), ["built", "read"]);
         let frame = &json["frames"][0];
         let expected = sorted(vec![
             "frame",

@@ -23,6 +23,23 @@ const BUFFER_BYTES: usize = 1 << 20;
 /// # Errors
 /// Those of `fill`; [`Error::Write`] and the errors of [`check_target`].
 pub(crate) fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> Result<()>) -> Result<()> {
+    write_with(path, fill, File::sync_all)
+}
+
+/// Writes bytes that can be made again: as other files, but not flushed to the device, which takes longer than what small files hold is
+/// worth. After a power failure the file may be cut off or hold zeros: whoever reads it needs a checksum.
+///
+/// # Errors
+/// [`Error::NoFolder`], [`Error::NotAFolder`], [`Error::NotAFile`], [`Error::Write`].
+pub fn write_scratch(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_with(path, |writer| writer.write_all(bytes).map_err(|source| Error::write(path, source)), |_| Ok(()))
+}
+
+fn write_with(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<&File>) -> Result<()>,
+    finish: impl FnOnce(&File) -> io::Result<()>,
+) -> Result<()> {
     check_target(path)?;
     let failed = |source| Error::write(path, source);
     let temporary = create_beside(path).map_err(failed)?;
@@ -31,7 +48,7 @@ pub(crate) fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> Res
     // What an error left in the buffer must not be written on drop: the file is about to go.
     let (file, _) = writer.into_parts();
     filled?;
-    file.sync_all().map_err(failed)?;
+    finish(file).map_err(failed)?;
     temporary.persist(path).map_err(|error| failed(error.error))?;
     Ok(())
 }
@@ -138,6 +155,18 @@ mod tests {
         fs::write(&path, "old and longer").unwrap();
         write(&path, |writer| writer.write_all(b"new").map_err(|source| Error::write(&path, source))).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn scratch_is_replaced_whole_too() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.table");
+        for content in [b"old and longer".as_slice(), b"new", b""] {
+            write_scratch(&path, content).unwrap();
+            assert_eq!(fs::read(&path).unwrap(), content);
+        }
+        assert!(write_scratch(&folder.path().join("none/a.table"), b"new").is_err());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 

@@ -14,7 +14,7 @@
 //! | `atomic` | bytes | a file that is complete or absent |
 //!
 //! Every file is written to a temporary one in the same folder, flushed to the device and renamed: a target that exists
-//! is replaced whole or left as it was. Equal input gives equal bytes.
+//! is replaced whole or left as it was. Equal input gives equal bytes. [`write_scratch`] alone does not flush.
 
 mod atomic;
 mod complete;
@@ -34,7 +34,7 @@ mod srgb;
 mod tone;
 mod writer;
 
-pub use atomic::remove_stale_files;
+pub use atomic::{remove_stale_files, write_scratch};
 pub use complete::is_complete;
 pub use cryptomatte::{Cryptomatte, DEFAULT_RANK_COUNT};
 pub use error::{Error, Result};

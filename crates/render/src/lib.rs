@@ -54,5 +54,5 @@ pub use options::{
     Culling, Density, EndCap, FrameNeeds, FrameOptions, GregoryPoints, Selection, Spacing, SurfaceMethod, TableNormals,
     TableWeights, View,
 };
-pub use surface::{MemoryBytes, PreprocessTimes, Preprocessed, Surface, SurfaceDesc, preprocess};
+pub use surface::{MemoryBytes, PreprocessTimes, Preprocessed, Surface, SurfaceDesc, preprocess, preprocess_cached};
 pub use targets::{Layers, NO_SURFACE, Targets};

@@ -10,7 +10,7 @@ use planish_subdiv::ControlMesh;
 use planish_subdiv::mesh::{HierarchicalEdit, VertexInterpolation};
 use planish_subdiv::refine::{CreasePatches, RefineOptions, Refinement};
 use planish_subdiv::scheme::Scheme;
-use planish_subdiv::tables::{BasisOptions, MeshRanges, Tables, TexTree};
+use planish_subdiv::tables::{BasisCache, BasisCounts, BasisOptions, MeshRanges, NoCache, Tables, TexTree};
 
 use crate::buffers::{FrameBuffers, ListBuffers, TableBuffers};
 use crate::camera::FrameCamera;
@@ -121,6 +121,8 @@ pub struct Preprocessed {
     pub meshes: Vec<MeshRanges>,
     /// Times; `upload` is 0.
     pub times: PreprocessTimes,
+    /// Where tables of configurations came from, of method `table`.
+    pub basis_counts: BasisCounts,
 }
 
 /// Level of tables after one step: 32 segments a side of a face, 64 a side of the cage's.
@@ -154,6 +156,15 @@ fn has_vertex_colors(mesh: &ControlMesh) -> bool {
 
 /// Refines cages and builds their tables, on one thread of the CPU.
 pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preprocessed, Error> {
+    preprocess_cached(meshes, desc, &NoCache)
+}
+
+/// As [`preprocess`]; tables of limit weights that a cache has are not made again.
+pub fn preprocess_cached(
+    meshes: &[&ControlMesh],
+    desc: &SurfaceDesc,
+    cache: &dyn BasisCache,
+) -> Result<Preprocessed, Error> {
     let options = RefineOptions {
         max_level: desc.level,
         uniform: desc.method == SurfaceMethod::Uniform,
@@ -174,6 +185,7 @@ pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preproc
         "colours that are subdivided as positions are",
     )?;
     let mut times = PreprocessTimes::default();
+    let mut basis_counts = BasisCounts::default();
     let mut parts: Vec<Tables> = Vec::with_capacity(meshes.len());
     for (index, mesh) in meshes.iter().enumerate() {
         let start = Instant::now();
@@ -185,7 +197,10 @@ pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preproc
         }
         if let Some(options) = desc.basis_options() {
             check_substitute(mesh, desc.method, options.scheme)?;
-            parts.push(Tables::of_basis(mesh, &options)?);
+            let (tables, counts) = Tables::of_basis_cached(mesh, &options, cache)?;
+            parts.push(tables);
+            basis_counts.read += counts.read;
+            basis_counts.built += counts.built;
             times.tables += milliseconds(start);
             continue;
         }
@@ -198,7 +213,7 @@ pub fn preprocess(meshes: &[&ControlMesh], desc: &SurfaceDesc) -> Result<Preproc
     let start = Instant::now();
     let (tables, meshes) = Tables::merge(parts)?;
     times.tables += milliseconds(start);
-    Ok(Preprocessed { tables, meshes, times })
+    Ok(Preprocessed { tables, meshes, times, basis_counts })
 }
 
 /// Meshes and objects on the GPU. Everything is kept alive by the surface: it must outlive the frames recorded with it.
@@ -254,7 +269,7 @@ impl Surface {
         capacity: Option<u32>,
     ) -> Result<Self, Error> {
         let start = Instant::now();
-        let Preprocessed { tables, meshes: ranges, mut times } = made;
+        let Preprocessed { tables, meshes: ranges, mut times, .. } = made;
         let facts: Vec<MeshFacts> =
             meshes.iter().zip(&ranges).map(|(mesh, range)| MeshFacts::new(mesh, range, desc.scheme)).collect();
         let (gpu_objects, sizes) = crate::objects::objects(objects, &facts, &ranges);

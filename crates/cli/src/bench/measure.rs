@@ -7,6 +7,7 @@ use planish_render::{
 };
 use planish_subdiv::refine::CreasePatches;
 use planish_subdiv::scheme::Scheme;
+use planish_subdiv::tables::NoCache;
 use serde::Serialize;
 
 use super::gregory::fetched_points;
@@ -124,7 +125,7 @@ impl<'a> Timed<'a> {
         plan.needs.grids = method.is_grid();
         plan.needs.vertex_normals = plan.desc.has_vertex_normals();
         plan.cull(arguments.no_cull || !setting.is_culled);
-        let mut session = Session::new(device, cage, &plan, bench.console)?;
+        let mut session = Session::new(device, cage, &plan, &NoCache, bench.console)?;
         let images = session.images(View::Shaded, Layers::None)?;
         let mut cage_motion = CageMotion::new(cage);
         let camera = session.camera;

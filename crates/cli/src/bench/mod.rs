@@ -10,9 +10,11 @@
 //! | `grids` | basis function tables with flat faces, Phong tessellation, PN triangles, fas and dfas |
 //! | `path` | fas with dfas, along a camera path or from the scene's cameras; `chart` draws it |
 //! | `cpu` | the building of tables alone |
+//! | `cached` | the building of basis function tables with reading them |
 //! | `measure` | what all of them measure of a frame |
 //! | `peer` | OpenSubdiv's times for the same |
 
+mod cached;
 mod chart;
 mod cpu;
 mod creases;
@@ -41,6 +43,9 @@ use peer::Peer;
 pub fn run(arguments: &BenchArguments, console: &Console) -> Result<()> {
     let peer = arguments.peer.as_deref().map(Peer::find).transpose()?;
     let bench = Bench { arguments, console, peer };
+    if arguments.cpu && arguments.tables {
+        return bench.scenes(None, |cage| cached::run(&bench, cage));
+    }
     if arguments.cpu {
         return bench.scenes(None, |cage| cpu::run(&bench, cage));
     }

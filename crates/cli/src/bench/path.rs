@@ -7,6 +7,7 @@ use planish_render::{Density, EndCap, GregoryPoints, Layers, SurfaceMethod, Tabl
 use planish_scene::Camera;
 use planish_subdiv::refine::CreasePatches;
 use planish_subdiv::scheme::Scheme;
+use planish_subdiv::tables::NoCache;
 use serde::Serialize;
 
 use super::chart::{Chart, Series};
@@ -120,7 +121,7 @@ impl Method {
         };
         let mut plan = Plan::of(cage, &setting, cameras.iter().map(|camera| Ok(Moment::seen_by(cage, camera, 0.0))))?;
         plan.cull(arguments.no_cull);
-        let mut session = Session::new(device, cage, &plan, bench.console)?;
+        let mut session = Session::new(device, cage, &plan, &NoCache, bench.console)?;
         let images = session.images(View::Shaded, Layers::None)?;
         let camera = session.camera;
         session.draw(&images, &camera, &cage.positions())?;

@@ -2,14 +2,16 @@
 
 use std::collections::HashMap;
 
-use crate::basis::grid::{Extent, GridTable, grid_table};
-use crate::basis::limit::{LimitMasks, Sector, around};
+use crate::basis::cache::{BasisCache, BasisCounts, NoCache, Rulebook};
+use crate::basis::grid::Extent;
+use crate::basis::limit::{Sector, around};
 use crate::basis::poly::{BORDER, CUT, Poly};
+use crate::basis::source::TableSource;
 use crate::basis::step::Step;
 use crate::basis::walk::{Walk, walk};
 use crate::error::Error;
 use crate::limit::LimitTable;
-use crate::mesh::{ControlMesh, Creasing, INFINITE_SHARPNESS};
+use crate::mesh::{ControlMesh, INFINITE_SHARPNESS};
 use crate::scheme::{Rules, Scheme};
 use crate::stencil::{StencilRow, StencilTable};
 use crate::tables::slots::ptex_faces;
@@ -55,11 +57,27 @@ impl Tables {
     /// # Panics
     /// If `level` is above [`MAX_TABLE_LEVEL`], or `steps` above [`MAX_TABLE_STEPS`].
     pub fn of_basis(mesh: &ControlMesh, options: &BasisOptions) -> Result<Self, Error> {
+        Ok(Self::of_basis_cached(mesh, options, &NoCache)?.0)
+    }
+
+    /// As [`Self::of_basis`], the same bits, with what a cache has; what it has not is stored there.
+    ///
+    /// # Errors
+    /// As [`Self::of_basis`].
+    ///
+    /// # Panics
+    /// As [`Self::of_basis`].
+    pub fn of_basis_cached(
+        mesh: &ControlMesh,
+        options: &BasisOptions,
+        cache: &dyn BasisCache,
+    ) -> Result<(Self, BasisCounts), Error> {
         let &BasisOptions { scheme, steps, level, ring_level, has_weights } = options;
         assert!(level <= MAX_TABLE_LEVEL && steps <= MAX_TABLE_STEPS, "a level that the tessellator reaches");
         let base = Level::from_mesh(mesh)?;
         check_cage(mesh, &base, scheme)?;
-        let rules = scheme.rules(mesh.options.triangles);
+        let rulebook = Rulebook { scheme, triangles: mesh.options.triangles, creasing: mesh.options.creasing };
+        let rules = scheme.rules(rulebook.triangles);
         let mut poly = Poly::of_level(&base, mesh.options.creasing);
         let mut places = base_places(&base, scheme);
         let mut tables = Self::of_cage(&base, scheme, steps);
@@ -78,10 +96,9 @@ impl Tables {
         let builder = Builder {
             rules: rules.as_ref(),
             poly: &poly,
-            creasing: mesh.options.creasing,
             first_point: tables.levels[steps as usize].points.start,
             has_weights,
-            masks: LimitMasks::default(),
+            source: TableSource::new(rules.as_ref(), rulebook, level, cache),
             limits: LimitTable::default(),
             limit_of: vec![NONE; poly.vertex_sharpness.len()],
             edge_of: vec![(NONE, false); poly.half_of_edge.len()],
@@ -89,9 +106,10 @@ impl Tables {
             known_limits: HashMap::new(),
             table: BasisTable { level, steps, ..BasisTable::default() },
         };
-        (tables.basis, tables.limits) = builder.build(&places);
+        let counts;
+        (tables.basis, tables.limits, counts) = builder.build(&places);
         (tables.basis.ring_level, tables.basis.rings) = (ring_level.unwrap_or(0), rings);
-        Ok(tables)
+        Ok((tables, counts))
     }
 
     /// Points of the cage, and where densities are known.
@@ -218,11 +236,10 @@ struct Builder<'a> {
     rules: &'a dyn Rules,
     /// The last level.
     poly: &'a Poly,
-    creasing: Creasing,
     /// Where its points begin.
     first_point: u32,
     has_weights: bool,
-    masks: LimitMasks,
+    source: TableSource<'a>,
     limits: LimitTable,
     /// Limit point of each vertex.
     limit_of: Vec<u32>,
@@ -234,7 +251,7 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn build(mut self, places: &[Place]) -> (BasisTable, LimitTable) {
+    fn build(mut self, places: &[Place]) -> (BasisTable, LimitTable, BasisCounts) {
         for (face, place) in (0..).zip(places).filter(|(_, place)| place.is_drawn) {
             if self.has_weights {
                 self.add_patch(face, place);
@@ -242,7 +259,7 @@ impl Builder<'_> {
                 self.add_substitute(face, place);
             }
         }
-        (self.table, self.limits)
+        (self.table, self.limits, self.source.counts())
     }
 
     fn add_patch(&mut self, face: u32, place: &Place) {
@@ -284,9 +301,10 @@ impl Builder<'_> {
     fn table_of(&mut self, walk: &Walk, extent: Extent) -> (u32, u32, u32) {
         let key = (extent == Extent::Edge, walk.word.clone());
         if !self.known.contains_key(&key) {
-            let level = self.table.level;
-            let made = grid_table(self.rules, walk, self.creasing, extent, level, &mut self.masks);
-            let first_weight = self.append(&made);
+            let made = self.source.grid(walk, extent);
+            let first_weight = self.table.weights.len() as u32;
+            self.table.weights.extend(made.positions);
+            self.table.tangents.extend(made.tangents);
             self.known.insert(key.clone(), Known { controls: made.controls, first_weight });
         }
         let known = &self.known[&key];
@@ -294,13 +312,6 @@ impl Builder<'_> {
         let point = |&control: &u32| self.first_point + walk.vertices[control as usize];
         self.table.controls.extend(known.controls.iter().map(point));
         (known.first_weight, first_control, known.controls.len() as u32)
-    }
-
-    fn append(&mut self, made: &GridTable) -> u32 {
-        let first = self.table.weights.len() as u32;
-        self.table.weights.extend(made.positions.iter().map(|&weight| weight as f32));
-        self.table.tangents.extend(made.tangents.iter().map(|tangents| tangents.map(|weight| weight as f32)));
-        first
     }
 
     /// The table of an edge, and whether it runs as its first half-edge does.
@@ -337,13 +348,10 @@ impl Builder<'_> {
         }
         let whole = Sector { count: 1, first: fan.spokes[0], faces: fan.spokes.len(), is_closed: fan.is_closed };
         let piece = around(poly, &fan, &whole, poly.width(self.rules));
-        let mask = self.masks.of(self.rules, &piece, self.creasing);
-        let weights = (0..piece.vertices.len()).map(|i| [mask.position[i], mask.tangents[0][i], mask.tangents[1][i]]);
-        let weights: Vec<[f32; 3]> = weights.map(|w| w.map(|weight| weight as f32)).collect();
         let next = self.limits.weights.len() as u32;
         let first_weight = *self.known_limits.entry(piece.word.clone()).or_insert(next);
         if first_weight == next {
-            self.limits.weights.extend(weights);
+            self.limits.weights.extend(self.source.limit(&piece));
         }
         let first_index = self.limits.indices.len() as u32;
         self.limits.indices.extend(piece.vertices.iter().map(|&vertex| self.first_point + vertex));

@@ -19,15 +19,15 @@ pub(crate) enum Extent {
     Edge,
 }
 
-/// Rows of a table, in f64: for each point weights of the controls that have any.
-#[derive(Clone, Debug, Default)]
+/// Rows of a table: for each point weights of the controls that have any.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct GridTable {
     /// Places of the controls in the walk, the first vertex first.
     pub controls: Vec<u32>,
     /// Weights of positions: `controls` a row.
-    pub positions: Vec<f64>,
+    pub positions: Vec<f32>,
     /// Weights of two tangents whose cross product points outward.
-    pub tangents: Vec<[f64; 2]>,
+    pub tangents: Vec<[f32; 2]>,
 }
 
 /// A piece while it is split: what is left of it, and where its points lie in the grid.
@@ -172,8 +172,8 @@ impl Piece<'_> {
         let mut table =
             GridTable { controls: controls.iter().map(|&control| control as u32).collect(), ..GridTable::default() };
         for (position, tangents) in &rows {
-            table.positions.extend(controls.iter().map(|&control| position[control]));
-            table.tangents.extend(controls.iter().map(|&control| tangents[control]));
+            table.positions.extend(controls.iter().map(|&control| position[control] as f32));
+            table.tangents.extend(controls.iter().map(|&control| tangents[control].map(|weight| weight as f32)));
         }
         table
     }

@@ -5,8 +5,10 @@
 //! of S's rows less the vertex', without the eigenvalue 1; the plane is spanned by the two left eigenvectors of the largest
 //! eigenvalues of that one, found by iterating both at once (orthogonal iteration).
 
+use std::cell::OnceCell;
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::PI;
+use std::rc::Rc;
 
 use crate::basis::poly::{CUT, Fan, Poly};
 use crate::basis::step::Step;
@@ -31,6 +33,17 @@ pub(crate) struct LimitMask {
 #[derive(Default)]
 pub(crate) struct LimitMasks {
     known: HashMap<Vec<u32>, LimitMask>,
+    /// By the word of a piece, too. Pieces that differ in how sharp they are soon become the same.
+    stages: HashMap<Vec<u32>, Rc<Stage>>,
+}
+
+/// What becomes of a piece in one step.
+struct Stage {
+    /// What lies around the vertex then, and its points in those of before.
+    walked: Walk,
+    rows: Vec<Vec<(u32, f64)>>,
+    /// Weights of the position and of the tangents, if it stays so.
+    stationary: OnceCell<[Vec<f64>; 3]>,
 }
 
 /// How many pieces infinitely sharp edges cut the fan of a vertex into, and the piece that a spoke's face is in: its first spoke, how
@@ -121,33 +134,46 @@ impl LimitMasks {
     /// The mask over a piece around the vertex that its walk began with.
     pub fn of(&mut self, rules: &dyn Rules, walk: &Walk, creasing: Creasing) -> &LimitMask {
         if !self.known.contains_key(&walk.word) {
-            let mask = limit_mask(rules, walk.poly(creasing));
+            let mask = self.make(rules, walk, creasing);
             self.known.insert(walk.word.clone(), mask);
         }
         &self.known[&walk.word]
+    }
+
+    fn make(&mut self, rules: &dyn Rules, walk: &Walk, creasing: Creasing) -> LimitMask {
+        let vertex_count = walk.vertices.len();
+        // The points of the piece as weights of those that it began with.
+        let mut values: Matrix = (0..vertex_count).map(|i| unit(vertex_count, i)).collect();
+        let first = walk.poly(creasing);
+        let mut word = around_first(&first, first.width(rules)).word;
+        let mut stage = self.stage(rules, walk, creasing);
+        let mut own = walk.clone();
+        for step in 0.. {
+            let is_the_same = stage.walked.word == word && stage.rows.len() == values.len();
+            if is_the_same || step == MAX_STEPS {
+                let weights = stage.stationary.get_or_init(|| stationary_weights(&own.poly(creasing), &stage.rows));
+                return mask_in_first(weights, &values);
+            }
+            values = stage.rows.iter().map(|row| weighed(row, &values)).collect();
+            own = stage.walked.clone();
+            word.clone_from(&own.word);
+            stage = self.stage(rules, &own, creasing);
+        }
+        unreachable!("the loop returns")
+    }
+
+    /// A step of a piece as it is walked.
+    fn stage(&mut self, rules: &dyn Rules, walk: &Walk, creasing: Creasing) -> Rc<Stage> {
+        let stage = self.stages.entry(walk.word.clone()).or_insert_with(|| {
+            let (walked, rows) = next_around(&walk.poly(creasing), rules);
+            Rc::new(Stage { walked, rows, stationary: OnceCell::new() })
+        });
+        Rc::clone(stage)
     }
 }
 
 /// A matrix, row by row; rows weigh the points of a piece.
 type Matrix = Vec<Vec<f64>>;
-
-fn limit_mask(rules: &dyn Rules, mut poly: Poly) -> LimitMask {
-    let vertex_count = poly.vertex_sharpness.len();
-    // The points of the piece as weights of those that it began with.
-    let mut values: Matrix = (0..vertex_count).map(|i| unit(vertex_count, i)).collect();
-    let mut word = around_first(&poly, poly.width(rules)).word;
-    for step in 0.. {
-        let (walked, rows) = next_around(&poly, rules);
-        let is_the_same = walked.word == word && rows.len() == values.len();
-        if is_the_same || step == MAX_STEPS {
-            return stationary_mask(&poly, &values, &rows);
-        }
-        values = rows.iter().map(|row| weighed(row, &values)).collect();
-        poly = walked.poly(poly.creasing);
-        word = walked.word;
-    }
-    unreachable!("the loop returns")
-}
 
 /// The piece around vertex 0 of a piece, of whose half-edges the first starts there.
 fn around_first(poly: &Poly, width: u32) -> Walk {
@@ -183,7 +209,8 @@ fn weighed(row: &[(u32, f64)], values: &Matrix) -> Vec<f64> {
     sum
 }
 
-fn stationary_mask(poly: &Poly, values: &Matrix, rows: &[Vec<(u32, f64)>]) -> LimitMask {
+/// Position and tangents of a piece that stays as it is, over its points.
+fn stationary_weights(poly: &Poly, rows: &[Vec<(u32, f64)>]) -> [Vec<f64>; 3] {
     let size = rows.len();
     let mut position = unit(size, 0);
     for _ in 0..ROUNDS {
@@ -191,12 +218,17 @@ fn stationary_mask(poly: &Poly, values: &Matrix, rows: &[Vec<(u32, f64)>]) -> Li
     }
     let total: f64 = position.iter().sum();
     position.iter_mut().for_each(|weight| *weight /= total);
-    let tangents = tangents(poly, rows);
+    let [u, v] = tangents(poly, rows);
+    [position, u, v]
+}
+
+/// The same over the points that the piece began with.
+fn mask_in_first([position, u, v]: &[Vec<f64>; 3], values: &Matrix) -> LimitMask {
     let in_first = |weights: &[f64]| {
         let row: Vec<(u32, f64)> = (0..).zip(weights.iter().copied()).collect();
         weighed(&row, values)
     };
-    LimitMask { position: in_first(&position), tangents: [in_first(&tangents[0]), in_first(&tangents[1])] }
+    LimitMask { position: in_first(position), tangents: [in_first(u), in_first(v)] }
 }
 
 fn left_multiplied(weights: &[f64], rows: &[Vec<(u32, f64)>], size: usize) -> Vec<f64> {

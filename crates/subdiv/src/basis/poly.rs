@@ -1,7 +1,7 @@
 //! A mesh of polygons as half-edges, whole or a piece of one: what schemes split, and what their rules look at.
 
 use crate::mesh::{Creasing, INFINITE_SHARPNESS};
-use crate::rules::{SemiSharpEdges, child_edge_sharpness, less_sharp};
+use crate::rules::{SemiSharpEdges, child_edge_sharpness, is_semi_sharp, less_sharp};
 use crate::scheme::Rules;
 use crate::topology::Level;
 
@@ -192,7 +192,8 @@ impl Poly {
     fn child_sharpness(&self, h: u32) -> f32 {
         let vertex = self.origin(h);
         let sharpness = self.sharpness(h);
-        if self.creasing == Creasing::Uniform || !self.is_whole[vertex as usize] {
+        // Chaikin's rule is about semi-sharp edges alone: most need not look around.
+        if self.creasing == Creasing::Uniform || !is_semi_sharp(sharpness) || !self.is_whole[vertex as usize] {
             return less_sharp(sharpness);
         }
         let edges: Vec<f32> = self.fan(vertex, None).edges.iter().map(|&e| self.edge_sharpness[e as usize]).collect();
@@ -324,7 +325,11 @@ impl Poly {
         let mut faces = Vec::new();
         for vertex in vertices {
             if self.is_whole[vertex as usize] {
-                faces.extend(self.fan(vertex, None).spokes.iter().map(|&spoke| self.face[spoke as usize]));
+                // As a fan has them; this is asked for so often that making one would count.
+                let start = self.start[vertex as usize];
+                let next = |&spoke: &u32| Some(self.twin(self.previous(spoke))).filter(|&h| h < CUT && h != start);
+                let spokes = std::iter::successors(Some(start).filter(|&h| h != BORDER), next);
+                faces.extend(spokes.map(|spoke| self.face[spoke as usize]));
             } else {
                 // Several fans: all that is there.
                 let at = (0..self.origin.len()).filter(|&h| self.origin[h] == vertex);

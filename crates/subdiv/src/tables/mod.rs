@@ -24,7 +24,10 @@ use crate::patch::{FillingQuad, PatchInfo, RegularPatch};
 use crate::refine::Refinement;
 use crate::stencil::{SharedWeights, StencilTable, has_large_faces};
 
-pub use crate::basis::{BasisOptions, FIXED_VALENCES, MAX_TABLE_LEVEL, MAX_TABLE_STEPS, TableSet, fixed_set};
+pub use crate::basis::{
+    BasisCache, BasisCounts, BasisOptions, FIXED_VALENCES, MAX_TABLE_LEVEL, MAX_TABLE_STEPS, NoCache, TableSet,
+    fixed_set,
+};
 pub use crate::selection::PatchCounts;
 pub use basis::{BasisEdge, BasisPatch, BasisTable, TABLE_TRIANGLE};
 pub use face_varying::{FaceVaryingEvaluator, FaceVaryingPatch, FaceVaryingTable, TexTree};

@@ -1,6 +1,7 @@
 //! Basis function tables against the evaluator, against schemes written down once more, and against what theory says of them.
 
 mod butterfly;
+mod cached;
 mod every_scheme;
 mod loops;
 mod mixed;
