@@ -1,6 +1,6 @@
 //! What composition multiplies is bounded, and shared where it can be.
 use crate::common::{mesh_with, read};
-use crate::robust::read_layers;
+use crate::robust::{package, read_layers};
 
 #[test]
 fn what_composition_multiplies_is_bounded() {
@@ -43,6 +43,11 @@ fn references_that_double_are_refused_before_they_are_composed() {
         }
         read(&doubling(arc, 5, below)).unwrap();
     }
+    // In a package, where the first layer is another than the file.
+    let root = format!("#usda 1.0\n{}def \"r\" (references = </A0/x/y>) {{}}\n", mesh_with(""));
+    let zip = package(&[("root.usda", format!("{root}{}", doubling("references", 30, below)).as_bytes())], 1);
+    let error = read_layers(&[("a.usdz", &zip)]).unwrap_err();
+    assert!(error.contains(multiplied), "{error}");
     // Below what no walk visits: inside of a material that a mesh is bound to.
     let shader =
         format!("{}def Material \"m\" {{ def \"s\" (references = </A0/x/y>) {{}}\n", doubling("references", 30, below));

@@ -176,7 +176,7 @@ fn text_nests_only_outside_of_strings_comments_and_paths() {
 }
 
 /// A package of stored entries; every size that it says of them is so many times too large.
-fn package(entries: &[(&str, &[u8])], lie: u32) -> Vec<u8> {
+pub fn package(entries: &[(&str, &[u8])], lie: u32) -> Vec<u8> {
     let mut zip = Vec::new();
     let mut directory = Vec::new();
     for (name, content) in entries {

@@ -9,7 +9,7 @@ use openusd::sdf::{self, AbstractData, Value};
 use openusd::usda;
 use openusd::usdc::CrateData;
 
-use super::crate_file;
+use super::{crate_file, package};
 use crate::gltf::fault::Fault;
 
 /// Places that one prim may be composed of. Composing it takes a time that grows with their square, a second or so at these.
@@ -25,6 +25,8 @@ const WORDS: [&str; 5] = ["references", "payload", "inherits", "specializes", "s
 /// Arcs of all layers that were opened.
 #[derive(Default)]
 pub struct Arcs {
+    /// The first layer.
+    root: Option<PathBuf>,
     layers: HashMap<PathBuf, Layer>,
 }
 
@@ -68,6 +70,10 @@ struct Place {
 impl Arcs {
     /// Adds those of a layer that was checked. What is wrong with it is told by who reads it next.
     pub fn add(&mut self, path: &Path, bytes: &[u8]) {
+        if package::is_package(bytes) {
+            // Its layers are opened next.
+            return;
+        }
         let layer = if bytes.starts_with(crate_file::MAGIC) {
             CrateData::open(Cursor::new(bytes), false).ok().map(|data| Layer::of(path, &data))
         } else {
@@ -75,13 +81,15 @@ impl Arcs {
             let text = std::str::from_utf8(bytes).ok().filter(|text| WORDS.iter().any(|word| text.contains(word)));
             text.and_then(|text| usda::parse(text).ok()).map(|data| Layer::of(path, &data))
         };
+        self.root.get_or_insert_with(|| path.to_owned());
         self.layers.insert(path.to_owned(), layer.unwrap_or_default());
     }
 
     /// Refuses a prim of a stage that is composed of too many places.
-    pub fn check(&self, root: &Path, path: &str) -> Result<(), Fault> {
+    pub fn check(&self, path: &str) -> Result<(), Fault> {
+        let Some(layer) = self.root.clone() else { return Ok(()) };
         let mut visits = MAX_VISITS;
-        let place = Place { layer: root.to_owned(), path: path.to_owned() };
+        let place = Place { layer, path: path.to_owned() };
         let places = self.count(&place, &mut Vec::new(), &mut visits);
         if places <= MAX_PLACES {
             return Ok(());

@@ -72,7 +72,7 @@ impl Findings {
     pub fn check_places(&self, path: &str) -> Result<(), Fault> {
         let mut state = self.0.borrow_mut();
         state.prim = Some(path.to_owned());
-        state.arcs.check(&state.root.1, path)
+        state.arcs.check(path)
     }
 
     /// What is wrong with a layer, if anything is.
@@ -101,7 +101,7 @@ impl State {
             self.checked.insert(path.to_owned());
             self.arcs.add(resolved, &bytes);
             if let Some(prim) = &self.prim {
-                self.arcs.check(&self.root.1, prim).map_err(|fault| misplaced(&self.root.0, fault))?;
+                self.arcs.check(prim).map_err(|fault| misplaced(&self.root.0, fault))?;
             }
         }
         let bytes: Arc<[u8]> = bytes.into();
