@@ -14,6 +14,7 @@
 //! | `weld` | a dump as one connected mesh |
 //! | `folder` | a folder to write into, which must end as it was meant to |
 //! | `layers` | an EXR file's channels |
+//! | `stage` | small USD stages |
 //! | `golden` | images against committed ones |
 
 pub mod cage;
@@ -27,5 +28,6 @@ pub mod parallel;
 pub mod ply;
 pub mod program;
 pub mod repository;
+pub mod stage;
 pub mod view;
 pub mod weld;

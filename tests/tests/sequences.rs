@@ -189,18 +189,40 @@ fn files_that_are_whole_are_left_alone_and_others_made_again() {
 }
 
 #[test]
+fn a_frame_is_there_only_if_all_of_its_files_are() {
+    let folder = temporary();
+    let scene = flight(folder.path());
+    let path = |name: &str| folder.path().join(name);
+    let run = || {
+        let render = Planish::render(&scene, &path("f.####.exr")).flags("-o").path(&path("f.####.png"));
+        render.flags(FLIGHT).flags("--frames 0-2 --skip-existing").run().silent_success().unwrap();
+    };
+    run();
+    let expected = contents(folder.path());
+    fs::remove_file(path("f.0000.png")).unwrap();
+    let png = fs::read(path("f.0001.png")).unwrap();
+    fs::write(path("f.0001.png"), &png[..png.len() - 9]).unwrap();
+    fs::write(path("f.0002.exr"), "text").unwrap();
+    run();
+    assert!(contents(folder.path()) == expected);
+}
+
+#[test]
 fn a_frame_that_fails_ends_the_run_unless_it_is_to_go_on() {
     let folder = temporary();
     let scene = flight(folder.path());
     let out = folder.path().join("f.####.exr");
-    // A folder stands where a frame should go.
-    fs::create_dir_all(folder.path().join("f.0001.exr/x")).unwrap();
+    // Folders stand where frames should go: one in the middle, and the last.
+    for name in ["f.0001.exr/x", "f.0003.exr/x"] {
+        fs::create_dir_all(folder.path().join(name)).unwrap();
+    }
     let run = |flags: &str| Planish::render(&scene, &out).flags(FLIGHT).flags("--frames 0-3").flags(flags).run();
     run("").one_error(FAILED).unwrap();
     let outcome = run("--continue-on-error");
     assert_eq!(outcome.status.code(), Some(FAILED));
-    assert!(outcome.stderr.ends_with("1 of 4 frames failed\n") && outcome.stderr.contains("f.0001.exr"), "{outcome:?}");
-    assert!([0, 2, 3].iter().all(|frame| folder.path().join(format!("f.000{frame}.exr")).is_file()));
+    let told = ["f.0001.exr", "f.0003.exr"].iter().all(|name| outcome.stderr.contains(name));
+    assert!(told && outcome.stderr.ends_with("2 of 4 frames failed\n"), "{outcome:?}");
+    assert!([0, 2].iter().all(|frame| folder.path().join(format!("f.000{frame}.exr")).is_file()));
 }
 
 #[test]

@@ -51,8 +51,6 @@ pub struct PlanSetting {
 
 /// How a cage is to be evaluated and seen: all that is decided before a device is needed.
 pub struct Plan {
-    /// The camera, as the scene describes it.
-    pub camera: Camera,
     /// The same, as the passes want it.
     pub frame_camera: FrameCamera,
     /// The scene's instances, as the camera sees them.
@@ -66,20 +64,23 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Decides for a cage that is to be seen, in all frames of a range.
+    /// Decides for a cage that is to be seen, in all frames of a range. `offsets`: when in each frame it is, in frames from the frame's
+    /// own time, which is the first of them.
     pub fn new(
         cage: &Cage,
         surface: &SurfaceArguments,
         view: &ViewArguments,
         rate: FrameRate,
         range: FrameRange,
+        offsets: &[f64],
     ) -> Result<Self> {
-        let moment = |frame: i32| Moment::new(cage, view, rate, f64::from(frame));
+        let moment = |frames: f64| Moment::new(cage, view, rate, frames);
         let setting = Self::setting(surface, view)?;
         if cage.is_animated(view) {
-            return Self::of(cage, &setting, range.frames().map(moment));
+            let moments = range.frames().flat_map(|frame| offsets.iter().map(move |offset| f64::from(frame) + offset));
+            return Self::of(cage, &setting, moments.map(moment));
         }
-        Self::of(cage, &setting, range.frames().take(1).map(moment))
+        Self::of(cage, &setting, range.frames().take(1).map(|frame| moment(f64::from(frame))))
     }
 
     /// Decides for a cage that is not drawn: with a given tess factor there need not be a camera that sees it.
@@ -97,7 +98,7 @@ impl Plan {
                 let setting = Self::setting(surface, view)?;
                 Self::of(cage, &setting, [Ok(Moment::seen_by(cage, &nowhere, rate.seconds(first)))])
             }
-            _ => Self::new(cage, surface, view, rate, range),
+            _ => Self::new(cage, surface, view, rate, range, &[0.0]),
         }
     }
 
@@ -177,14 +178,7 @@ impl Plan {
             placed: is_placed,
             ..frame_needs(setting.spacing, density, &objects)
         };
-        Ok(Self {
-            frame_camera: frame_camera(&camera, setting.size),
-            camera,
-            objects,
-            desc,
-            needs,
-            options: setting.options,
-        })
+        Ok(Self { frame_camera: frame_camera(&camera, setting.size), objects, desc, needs, options: setting.options })
     }
 
     /// What culling is left out of a frame.

@@ -15,7 +15,7 @@ use planish_scene::{Camera, Lens};
 use crate::aov::{Aov, drawn_layers};
 use crate::args::RenderArguments;
 use crate::cage::{Cage, milliseconds};
-use crate::console::{Console, WrongUsage};
+use crate::console::{Console, WrongUsage, error_text};
 use crate::frames::{FrameRange, frame_path, has_placeholder};
 use crate::image::{ColorSum, Crop, read_layers};
 use crate::interrupt;
@@ -113,6 +113,8 @@ struct Renderer<'a> {
     /// What a scene with materials or light is shaded with.
     shaded: Option<Shaded>,
     frames: Vec<FrameStats>,
+    /// What could not be made or written of a run that goes on.
+    failed_count: u64,
     split: Split,
 }
 
@@ -126,7 +128,9 @@ impl<'a> Renderer<'a> {
         console: &'a Console,
     ) -> Result<(Device, Self)> {
         let aovs = arguments.aov.aovs();
-        let mut plan = Plan::new(cage, &arguments.surface, &arguments.view, rate, range)?;
+        let shutter = shutter(arguments, cage, rate, range)?;
+        let offsets = offsets(shutter, aovs);
+        let mut plan = Plan::new(cage, &arguments.surface, &arguments.view, rate, range, &offsets)?;
         plan.cull(arguments.frames.no_cull);
         plan.needs.moves = aovs.contains(&Aov::Motion);
         let has_mattes = aovs.iter().any(|aov| aov.is_matte());
@@ -137,7 +141,6 @@ impl<'a> Renderer<'a> {
         if is_shaded {
             shading::add_needs(cage.scene(), &mut plan.needs);
         }
-        let shutter = shutter(arguments, cage, &plan, rate);
         let device = open_device(&arguments.device, console)?;
         let cache = TableCache::new(arguments.surface.table_cache.as_deref(), console);
         let mut session = Session::new(&device, cage, &plan, &cache, console)?;
@@ -178,6 +181,7 @@ impl<'a> Renderer<'a> {
             plain,
             shaded,
             frames: Vec::new(),
+            failed_count: 0,
             split: Split::default(),
         };
         Ok((device, renderer))
@@ -193,21 +197,11 @@ impl<'a> Renderer<'a> {
         self.split.write = report.busy.as_secs_f64() * 1e3;
         self.split.write_waited = report.waited.as_secs_f64() * 1e3;
         self.split.wall = milliseconds(start);
-        let mut failed_count = rendered?;
-        let mut tell = |error: planish_film::Error| -> Result<()> {
-            if !self.arguments.continue_on_error {
-                return Err(error.into());
-            }
-            failed_count += 1;
-            self.console.warn(error);
-            Ok(())
-        };
-        if let Err(error) = finished {
-            tell(error)?;
-        }
-        writer.take_errors().into_iter().try_for_each(&mut tell)?;
-        if failed_count > 0 {
-            bail!("{failed_count} of {} frames failed", range.count());
+        rendered?;
+        let errors: Vec<_> = finished.err().into_iter().chain(writer.take_errors()).collect();
+        errors.into_iter().try_for_each(|error| self.go_on(error.into()))?;
+        if self.failed_count > 0 {
+            bail!("{} of {} frames failed", self.failed_count, range.count());
         }
         if interrupt::is_requested() {
             bail!("interrupted after {} files", report.file_count);
@@ -215,11 +209,20 @@ impl<'a> Renderer<'a> {
         Ok(())
     }
 
-    /// Renders them; returns how many failed.
-    fn render_all(&mut self, range: FrameRange, writer: &mut FilmWriter) -> Result<u64> {
+    /// Counts and tells what failed where the run goes on nevertheless; else gives it back.
+    fn go_on(&mut self, error: anyhow::Error) -> Result<()> {
+        if !self.arguments.continue_on_error {
+            return Err(error);
+        }
+        self.failed_count += 1;
+        self.console.warn(error_text(&error));
+        Ok(())
+    }
+
+    /// Renders them.
+    fn render_all(&mut self, range: FrameRange, writer: &mut FilmWriter) -> Result<()> {
         let options = write_options(self.arguments);
         let mut progress = Progress::new(self.console, range.count());
-        let mut failed_count = 0;
         for frame in range.frames() {
             let paths = self.arguments.outputs.iter().map(|output| frame_path(output, frame));
             let targets: Vec<Target> = paths.map(|path| Target { path, options }).collect();
@@ -228,26 +231,20 @@ impl<'a> Renderer<'a> {
                 progress.frame_done(false);
                 continue;
             }
-            let written = self.frame(frame, &progress).and_then(|film| {
-                let Some(film) = film else { return Ok(false) };
-                let told: Vec<String> = targets.iter().map(|target| target.path.display().to_string()).collect();
-                writer.write(film, targets)?;
-                told.iter().for_each(|path| self.console.explain(format_args!("writing {path}")));
-                Ok(true)
-            });
-            match written {
-                Ok(true) => {}
-                Ok(false) => break,
-                Err(error) if self.arguments.continue_on_error => {
-                    failed_count += 1;
-                    self.console.warn(format_args!("frame {frame}: {}", crate::console::error_text(&error)));
+            match self.frame(frame, &progress).with_context(|| format!("frame {frame}")) {
+                Ok(None) => break,
+                Ok(Some(film)) => {
+                    let told: Vec<String> = targets.iter().map(|target| target.path.display().to_string()).collect();
+                    // What this tells of is an earlier film, with its path.
+                    writer.write(film, targets).or_else(|error| self.go_on(error.into()))?;
+                    told.iter().for_each(|path| self.console.explain(format_args!("writing {path}")));
                 }
-                Err(error) => return Err(error),
+                Err(error) => self.go_on(error)?,
             }
             progress.patches = self.frames.last().map_or(0, |frame| frame.patches_by_level.iter().sum());
             progress.frame_done(true);
         }
-        Ok(failed_count)
+        Ok(())
     }
 
     /// Renders a frame; none if Ctrl-C was pressed meanwhile.
@@ -411,11 +408,21 @@ impl<'a> Renderer<'a> {
 
 /// When the shutter opens and closes, in frames: as asked for, or as the camera says. None where nothing moves meanwhile, or a
 /// single sample sees one moment alone.
-fn shutter(arguments: &RenderArguments, cage: &Cage, plan: &Plan, rate: FrameRate) -> Option<[f64; 2]> {
-    let of_camera = plan.camera.rig.as_ref().and_then(|rig| rig.shutter);
+fn shutter(arguments: &RenderArguments, cage: &Cage, rate: FrameRate, range: FrameRange) -> Result<Option<[f64; 2]>> {
+    let first = f64::from(range.frames().next().unwrap_or_default());
+    let camera = Moment::new(cage, &arguments.view, rate, first)?.camera;
+    let of_camera = camera.rig.as_ref().and_then(|rig| rig.shutter);
     let in_frames = of_camera.map(|seconds| seconds.map(|second| second / rate.seconds(1.0)));
     let shutter = arguments.sampling.shutter.or(in_frames);
-    shutter.filter(|[open, close]| open < close && arguments.samples > 1 && cage.is_animated(&arguments.view))
+    let sees_motion =
+        |[open, close]: &[f64; 2]| open < close && arguments.samples > 1 && cage.is_animated(&arguments.view);
+    Ok(shutter.filter(sees_motion))
+}
+
+/// When in a frame something of it is seen, in frames from the frame's own time.
+fn offsets(shutter: Option<[f64; 2]>, aovs: &[Aov]) -> Vec<f64> {
+    let next = aovs.contains(&Aov::Motion).then_some(1.0);
+    std::iter::once(0.0).chain(shutter.into_iter().flatten()).chain(next).collect()
 }
 
 #[cfg(test)]

@@ -190,6 +190,58 @@ mod tests {
     }
 
     #[test]
+    fn filters_have_the_spread_of_their_formulas() {
+        use std::f64::consts::PI;
+        // A Gaussian of deviation 1/3 loses what lies beyond three deviations: 2 * 3 * 0.004432 of 0.9973 of its variance.
+        let gaussian = (1.0 - 6.0 * 0.004_432 / 0.997_3) / 9.0;
+        // The integral of x^2 cos(k pi x) from -1 to 1 is 4 (-1)^k / (k pi)^2.
+        let window = 1.0 / 3.0 + 2.0 / (0.358_75 * PI * PI) * (-0.488_29 + 0.141_28 / 4.0 - 0.011_68 / 9.0);
+        for (filter, variance, width) in [
+            (PixelFilter::Box, 1.0 / 3.0, 1.0),
+            (PixelFilter::Triangle, 1.0 / 6.0, 2.0),
+            (PixelFilter::Gaussian, gaussian, 2.5),
+            (PixelFilter::BlackmanHarris, window, 2.0),
+        ] {
+            assert_eq!(filter.default_width(), width, "{filter:?}");
+            for width in [1.0, 3.0] {
+                let samples = samples(4096, filter, width);
+                let places = samples.iter().flat_map(|sample| sample.pixel.to_array()).map(f64::from);
+                let found = places.map(|place| place * place).sum::<f64>() / 8192.0;
+                let expected = variance * (0.5 * width) * (0.5 * width);
+                assert!((found / expected - 1.0).abs() < 1e-3, "{filter:?} {width}: {found}, expected {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_lens_is_seen_from_all_of_its_sides() {
+        let samples = samples(256, PixelFilter::Box, 1.0);
+        let mut found = [0; 8];
+        for sample in &samples {
+            let turn = sample.lens.y.atan2(sample.lens.x).rem_euclid(std::f32::consts::TAU);
+            found[(turn / std::f32::consts::FRAC_PI_4) as usize % 8] += 1;
+        }
+        assert!(found.iter().all(|count| (26..=38).contains(count)), "{found:?}");
+    }
+
+    #[test]
+    fn no_number_of_a_sample_goes_with_another() {
+        let samples = samples(256, PixelFilter::Box, 1.0);
+        let numbers = |sample: &Sample| {
+            let Sample { pixel, time, lens } = *sample;
+            [pixel.x, pixel.y, time as f32 - 0.5, lens.x, lens.y]
+        };
+        let product =
+            |a: usize, b: usize| samples.iter().map(|sample| numbers(sample)[a] * numbers(sample)[b]).sum::<f32>();
+        for a in 0..5 {
+            for b in 0..a {
+                let correlation = product(a, b) / (product(a, a) * product(b, b)).sqrt();
+                assert!(correlation.abs() < 0.12, "{a} and {b}: {correlation}");
+            }
+        }
+    }
+
+    #[test]
     fn times_and_places_on_the_lens_are_spread_evenly() {
         let samples = samples(256, PixelFilter::Box, 1.0);
         for eighth in 0..8 {

@@ -354,6 +354,114 @@ mod tests {
     }
 
     #[test]
+    fn a_material_keeps_all_that_it_says() {
+        let reference = |texture: usize| TextureRef {
+            texture,
+            channel: texture as u32 % 4,
+            is_srgb: false,
+            transform: [[2.0, 0.5, 0.25], [-0.5, 3.0, texture as f32]],
+            scale: [2.0; 4],
+            bias: [-1.0; 4],
+        };
+        let used = |texture: usize| {
+            let TextureRef { channel, transform, scale, bias, .. } = reference(texture);
+            Some(TextureUseDesc { texture, channel, transform, scale, bias })
+        };
+        let material = Material {
+            name: "all".to_owned(),
+            base_color: [0.1, 0.2, 0.3],
+            base_color_texture: Some(reference(0)),
+            opacity: 0.4,
+            opacity_texture: Some(reference(1)),
+            alpha: AlphaMode::Mask(0.3),
+            metallic: 0.6,
+            metallic_texture: Some(reference(2)),
+            roughness: 0.7,
+            roughness_texture: Some(reference(3)),
+            normal_texture: Some(reference(4)),
+            occlusion_texture: Some(reference(5)),
+            occlusion_strength: 0.8,
+            emissive: [4.0, 5.0, 6.0],
+            emissive_texture: Some(reference(6)),
+            ior: 1.7,
+            specular: Some([0.01, 0.02, 0.03]),
+            clearcoat: 0.9,
+            clearcoat_roughness: 0.15,
+            double_sided: false,
+        };
+        let expected = MaterialDesc {
+            base_color: [0.1, 0.2, 0.3],
+            opacity: 0.4,
+            alpha: Alpha::Mask(0.3),
+            metallic: 0.6,
+            roughness: 0.7,
+            emissive: [4.0, 5.0, 6.0],
+            ior: 1.7,
+            specular: Some([0.01, 0.02, 0.03]),
+            clearcoat: 0.9,
+            clearcoat_roughness: 0.15,
+            occlusion_strength: 0.8,
+            double_sided: false,
+            id: 0,
+            textures: std::array::from_fn(used),
+        };
+        let uses: Vec<TextureKey> = (0..7).map(|texture| (texture, false)).collect();
+        assert_eq!(material_desc(&material, &uses), expected);
+    }
+
+    #[test]
+    fn textures_keep_their_wraps_and_are_decoded_where_they_are_colours() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        // Half of the light is 188 of 255.
+        let film =
+            planish_film::Film { width: 2, height: 1, color: vec![[0.5, 0.5, 0.5, 1.0]; 2], ..Default::default() };
+        planish_film::write_png(&film, &path).unwrap();
+        let content = ImageContent::File(path);
+        let reference = |is_srgb| Some(TextureRef { is_srgb, ..TextureRef::plain(0) });
+        let scene = Scene {
+            images: vec![ImageSource { name: "a".to_owned(), content }],
+            textures: vec![Texture { image: 0, wrap: [Wrap::Mirror, Wrap::Black], is_nearest: true }],
+            materials: vec![Material {
+                base_color_texture: reference(true),
+                normal_texture: reference(false),
+                ..Material::default()
+            }],
+            ..Scene::default()
+        };
+        let textures = SceneTextures::load(&scene).unwrap();
+        let descs = textures.descs(&scene);
+        assert_eq!(descs.len(), 2);
+        for (desc, expected) in descs.iter().zip([false, true]) {
+            assert_eq!((desc.size, desc.wrap), ([2, 1], [TextureWrap::Mirror, TextureWrap::Black]));
+            let Texels::Bytes { texels, is_srgb } = desc.texels else { panic!("bytes") };
+            assert_eq!((texels, is_srgb, desc.is_nearest), ([[188, 188, 188, 255]; 2].as_slice(), expected, true));
+        }
+    }
+
+    /// A PNG image of one grey texel of 16 bits: half of what they hold.
+    const DEEP_GREY: &[u8] = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x01\0\0\0\x01\x10\0\0\0\0j\xeeG\x16\
+        \0\0\0\x0eIDATx\x01\x01\x03\0\xfc\xff\0\x80\0\x01\x03\0\x81\xe1\xb3\x15c\0\0\0\0IEND\xaeB`\x82";
+
+    #[test]
+    fn texels_of_16_bits_are_light_where_they_are_colours_and_numbers_where_not() {
+        let content = ImageContent::Bytes(DEEP_GREY.to_vec());
+        let reference = |is_srgb| Some(TextureRef { is_srgb, ..TextureRef::plain(0) });
+        let mut scene = textured_scene();
+        scene.images[1].content = content;
+        scene.materials = vec![Material {
+            base_color_texture: reference(true),
+            normal_texture: reference(false),
+            ..Material::default()
+        }];
+        let textures = SceneTextures::load(&scene).unwrap();
+        for (desc, expected) in textures.descs(&scene).iter().zip([0.5, 0.214]) {
+            let Texels::Halves(texels) = desc.texels else { panic!("halves") };
+            assert!((texels[0][0].to_f32() - expected).abs() < 1e-3, "{texels:?}, expected {expected}");
+        }
+    }
+
+    #[test]
     fn a_scene_without_materials_and_light_is_not_shaded() {
         let mut scene = Scene::default();
         assert!(!is_shaded(&scene));
@@ -369,8 +477,14 @@ mod tests {
         let mut scene = Scene { materials: vec![Material::default()], ..Scene::default() };
         add_needs(&scene, &mut needs);
         assert!(!needs.cutouts);
-        scene.materials.push(Material { alpha: AlphaMode::Mask(0.5), ..Material::default() });
-        add_needs(&scene, &mut needs);
-        assert!(needs.cutouts);
+        for material in [
+            Material { alpha: AlphaMode::Mask(0.5), ..Material::default() },
+            Material { double_sided: false, ..Material::default() },
+        ] {
+            scene.materials = vec![Material::default(), material];
+            needs.cutouts = false;
+            add_needs(&scene, &mut needs);
+            assert!(needs.cutouts);
+        }
     }
 }

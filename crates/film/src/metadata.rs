@@ -86,11 +86,11 @@ mod tests {
         [0, 1, 2].map(|i| image[i] / image[3])
     }
 
-    /// A camera at (0, 0, 5) looking down -z with a field of view of 90 degrees, near plane 1, depth reversed or not: z
-    /// is free here.
+    /// A camera at (0, 0, 5) looking down -z that sees 90 degrees from left to right, twice as wide as high, near plane 1,
+    /// depth reversed or not: z is free here.
     fn metadata() -> Metadata {
         let view = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, -5.0, 1.0]];
-        let clip = [[1.0, 0.0, 0.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], [0.0, 0.0, 1.0, 0.0]];
+        let clip = [[1.0, 0.0, 0.0, 0.0], [0.0, -2.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], [0.0, 0.0, 1.0, 0.0]];
         let mut metadata = Metadata::default();
         metadata.set_camera(&view, &clip);
         metadata
@@ -115,7 +115,7 @@ mod tests {
             [x, y]
         };
         assert_eq!(image([0.0, 0.0, 0.0]), [0.5, 0.5]);
-        assert_eq!(image([-5.0, 5.0, 0.0]), [0.0, 0.0]);
-        assert_eq!(image([5.0, -5.0, 0.0]), [1.0, 1.0]);
+        assert_eq!(image([-5.0, 2.5, 0.0]), [0.0, 0.0]);
+        assert_eq!(image([5.0, -2.5, 0.0]), [1.0, 1.0]);
     }
 }

@@ -43,7 +43,7 @@ pub struct Material {
     pub clearcoat: f32,
     /// Its perceptual roughness.
     pub clearcoat_roughness: f32,
-    /// Whether backs are drawn. The renderer draws both sides of open surfaces of materials that are not.
+    /// Whether backs are there.
     pub double_sided: bool,
 }
 

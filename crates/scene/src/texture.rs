@@ -1,6 +1,7 @@
 //! Image files to texels: PNG, JPEG, OpenEXR, Radiance and TIFF, told by their first bytes.
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 
 use half::f16;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
@@ -63,11 +64,12 @@ pub fn decode_image(source: &ImageSource, is_srgb: bool) -> Result<DecodedImage,
     let bytes = match &source.content {
         ImageContent::Bytes(bytes) => bytes,
         ImageContent::File(path) => {
-            let metadata = std::fs::metadata(path).map_err(|reason| error(unreadable(&reason)))?;
+            let metadata = std::fs::metadata(path).map_err(|reason| error(unreadable(path, &reason)))?;
             if !metadata.is_file() {
-                return Err(error(Fault::whole("something that is no regular file", EXPECTED)));
+                let found = format!("something that is no regular file at {}", told(path));
+                return Err(error(Fault::whole(found, EXPECTED)));
             }
-            read = std::fs::read(path).map_err(|reason| error(unreadable(&reason)))?;
+            read = std::fs::read(path).map_err(|reason| error(unreadable(path, &reason)))?;
             &read
         }
     };
@@ -76,8 +78,12 @@ pub fn decode_image(source: &ImageSource, is_srgb: bool) -> Result<DecodedImage,
     decoded.unwrap_or_else(|_| Err(damaged("content that the decoder cannot cope with"))).map_err(error)
 }
 
-fn unreadable(reason: &std::io::Error) -> Fault {
-    Fault::whole(format!("no file that can be read ({reason})"), EXPECTED)
+fn told(path: &Path) -> String {
+    shown(&path.display().to_string())
+}
+
+fn unreadable(path: &Path, reason: &std::io::Error) -> Fault {
+    Fault::whole(format!("no file that can be read at {} ({reason})", told(path)), EXPECTED)
 }
 
 fn damaged(found: impl std::fmt::Display) -> Fault {
@@ -228,9 +234,13 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_file_is_told_by_the_name_of_its_image() {
+    fn a_missing_file_is_told_by_the_name_of_its_image_and_its_path() {
         let content = ImageContent::File("/nowhere/at/all.png".into());
         let error = decode_image(&ImageSource { name: "wood".to_owned(), content }, true).unwrap_err();
-        assert!(error.to_string().starts_with("image wood: found no file that can be read"));
+        let message = error.to_string();
+        assert!(
+            message.starts_with("image wood: found no file that can be read at /nowhere/at/all.png ("),
+            "{message}"
+        );
     }
 }

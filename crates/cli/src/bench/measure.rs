@@ -108,7 +108,6 @@ impl<'a> Timed<'a> {
                 ..frame_needs(arguments.spacing.into(), tess_factor, &objects)
             },
             objects,
-            camera,
             desc: SurfaceDesc {
                 method,
                 level,

@@ -151,7 +151,7 @@ pub struct EnvironmentDesc<'a> {
     pub color: [f32; 3],
     /// The environment's own space to the world: a rotation.
     pub to_world: Mat3,
-    /// Whether it is seen behind the scene, with coverage 0.
+    /// Whether it is seen behind the scene, which it covers.
     pub is_visible: bool,
 }
 

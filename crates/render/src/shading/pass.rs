@@ -27,8 +27,7 @@ pub struct IdCoverage {
 /// A frame that was shaded.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShadedFrame {
-    /// Mean radiance and coverage of each pixel, rows from the top. Radiance is premultiplied, apart from a visible environment's,
-    /// which has no coverage.
+    /// Mean radiance and coverage of each pixel, rows from the top. Radiance is premultiplied; a visible environment covers.
     pub color: Vec<[f32; 4]>,
     /// Ids of objects in each pixel, most first, if they were asked for. Of more than [`ID_SLOTS`] in a pixel those that
     /// came last are left out.

@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 
 use glam::{Affine3A, Quat, Vec3};
-use planish_render::shading::{LightDesc, LightKind, MaterialDesc, ObjectMaterials, ShadedFrame, ShadingDesc};
+use planish_render::shading::{LightDesc, LightKind, MaterialDesc, ObjectMaterials, ShadedFrame, ShadingDesc, Shadows};
 use planish_render::{FrameCamera, ObjectDesc, SurfaceDesc, SurfaceMethod};
 
 use super::darkroom::{Darkroom, Subject, camera, on_wall, sun, wall};
@@ -190,6 +190,48 @@ fn a_wide_sun_has_a_penumbra_as_wide_as_it_should_be() {
         checked[case] += 1;
     }
     assert!(checked.iter().all(|&count| count > 4), "{checked:?}");
+    room.assert_silent();
+}
+
+#[test]
+fn a_round_lamp_has_a_penumbra_as_wide_as_it_should_be() {
+    let room = Darkroom::new(false);
+    let (mut subject, camera) = plate_over_floor(&room);
+    let (radius, up) = (0.3, 2.6);
+    let lamp = |kind| LightDesc {
+        kind,
+        to_world: Affine3A::from_translation(Vec3::Z * up),
+        intensity: [9.0; 3],
+        casts_shadows: true,
+    };
+    let range = f32::INFINITY;
+    for kind in [LightKind::Point { radius, range }, LightKind::Spot { radius, range, inner: 0.9, outer: 1.5 }] {
+        let light = lamp(kind);
+        assert!(Shadows::varies(&[light]));
+        let lit = room.shoot(&mut subject, &camera, &[light], 16);
+        let bare = room.shoot(&mut subject, &camera, &[LightDesc { casts_shadows: false, ..light }], 16);
+        // From the lamp's middle the plate's edge falls here, and its rim is seen over that edge from so far to each side.
+        let edge = PLATE * up / (up - HEIGHT);
+        let reach = radius * HEIGHT / (up - HEIGHT);
+        let mut checked = [0; 3];
+        for pixel in 0..lit.color.len() {
+            let Some(share) = share(&lit, &bare, pixel) else { continue };
+            let floor = on_wall(&camera, pixel as u32 % SIZE[0], pixel as u32 / SIZE[0]);
+            if floor.y.abs() > 0.4 {
+                continue;
+            }
+            let (case, expected) = match (edge - floor.x.abs()) / reach {
+                i if i > 1.35 => (0, 0.0..=0.0),
+                i if i < -1.35 => (1, 0.99..=1.01),
+                i if i.abs() < 0.1 => (2, 0.25..=0.75),
+                _ => continue,
+            };
+            assert!(expected.contains(&share), "{floor}: {share}");
+            checked[case] += 1;
+        }
+        assert!(checked.iter().all(|&count| count > 4), "{checked:?}");
+    }
+    assert!(!Shadows::varies(&[lamp(LightKind::Point { radius: 0.0, range })]));
     room.assert_silent();
 }
 

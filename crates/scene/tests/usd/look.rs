@@ -1,5 +1,6 @@
 //! Cameras, lights and materials.
-use planish_scene::{AlphaMode, LightKind, Wrap};
+use glam::DVec3;
+use planish_scene::{AlphaMode, LightKind, Scene, TextureRef, Wrap};
 
 use crate::common::{FACES, mesh_with, read};
 
@@ -148,4 +149,128 @@ def Mesh "Plain" {{
     assert_eq!(scene.textures[texture.texture].wrap, [Wrap::Repeat, Wrap::Black]);
     assert_eq!(scene.images[0].name, "wood.png");
     assert_eq!(of(1, 0).base_color, [0.5, 0.25, 0.0]);
+}
+
+/// The first material of a quad that is bound to one with these inputs, these texture inputs and these of its coordinates.
+fn surface(inputs: &str, texture: &str, coordinates: &str) -> Scene {
+    let text = format!(
+        r#"def Material "M" {{
+    token outputs:surface.connect = </M/S.outputs:surface>
+    def Shader "S" {{
+        uniform token info:id = "UsdPreviewSurface"
+        token outputs:surface
+        {inputs}
+    }}
+    def Shader "T" {{
+        uniform token info:id = "UsdUVTexture"
+        asset inputs:file = @wood.png@
+        float2 inputs:st.connect = </M/X.outputs:result>
+        float outputs:r
+        float outputs:g
+        float outputs:b
+        float outputs:a
+        float3 outputs:rgb
+        {texture}
+    }}
+    def Shader "X" {{
+        uniform token info:id = "UsdTransform2d"
+        float2 inputs:in.connect = </M/R.outputs:result>
+        float2 outputs:result
+        {coordinates}
+    }}
+    def Shader "R" {{
+        uniform token info:id = "UsdPrimvarReader_float2"
+        string inputs:varname = "st"
+        float2 outputs:result
+    }}
+}}
+{}"#,
+        mesh_with("        rel material:binding = </M>")
+    );
+    let scene = read(&text).unwrap();
+    assert_eq!(scene.warnings, []);
+    scene
+}
+
+#[test]
+fn textures_are_scaled_then_turned_then_moved_and_turned_over() {
+    let scene = surface(
+        "color3f inputs:diffuseColor.connect = </M/T.outputs:rgb>",
+        "",
+        "float inputs:rotation = 90\n float2 inputs:scale = (2, 3)\n float2 inputs:translation = (0.25, 0.125)",
+    );
+    let [s, t] = scene.materials[0].base_color_texture.as_ref().unwrap().transform;
+    let at = |u: f32, v: f32| [s, t].map(|[a, b, c]| a * u + b * v + c);
+    // (2u, 3v) turned counter-clockwise is (-3v, 2u); images run down from t = 1.
+    for (u, v) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.25, 0.5)] {
+        let expected = [0.25 - 3.0 * v, 1.0 - (0.125 + 2.0 * u)];
+        assert!(
+            at(u, v).iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-6),
+            "{:?}",
+            at(u, v)
+        );
+    }
+}
+
+#[test]
+fn channels_factors_and_colour_spaces_of_textures_are_kept() {
+    let inputs = "color3f inputs:emissiveColor.connect = </M/T.outputs:rgb>
+        float inputs:metallic.connect = </M/T.outputs:g>
+        float inputs:roughness.connect = </M/T.outputs:b>
+        float inputs:opacity.connect = </M/T.outputs:a>
+        float inputs:occlusion.connect = </M/T.outputs:r>
+        normal3f inputs:normal.connect = </M/T.outputs:rgb>";
+    let factors = "float4 inputs:scale = (2, 3, 4, 5)\n float4 inputs:bias = (-1, -2, -3, -4)";
+    for (space, [color, data]) in [("auto", [true, false]), ("raw", [false, false]), ("sRGB", [true, true])] {
+        let scene = surface(inputs, &format!("{factors}\n token inputs:sourceColorSpace = \"{space}\""), "");
+        let material = &scene.materials[0];
+        let told = |texture: &Option<TextureRef>| {
+            let texture = texture.as_ref().unwrap();
+            assert_eq!((texture.scale, texture.bias), ([2.0, 3.0, 4.0, 5.0], [-1.0, -2.0, -3.0, -4.0]));
+            (texture.channel, texture.is_srgb)
+        };
+        assert_eq!(told(&material.emissive_texture), (0, color), "{space}");
+        assert_eq!(told(&material.metallic_texture), (1, data), "{space}");
+        assert_eq!(told(&material.roughness_texture), (2, data), "{space}");
+        assert_eq!(told(&material.opacity_texture), (3, data), "{space}");
+        assert_eq!(told(&material.occlusion_texture), (0, data), "{space}");
+        assert_eq!(told(&material.normal_texture), (0, data), "{space}");
+        // A texture stands instead of its factor.
+        assert_eq!(
+            (material.emissive, material.metallic, material.roughness, material.opacity),
+            ([1.0; 3], 1.0, 1.0, 1.0)
+        );
+        assert_eq!(material.alpha, AlphaMode::Blend);
+    }
+}
+
+#[test]
+fn inputs_of_a_surface_are_its_material_s_factors() {
+    let of = |inputs: &str| surface(inputs, "", "").materials.remove(0);
+    let plain = of("color3f inputs:emissiveColor = (1, 2, 3)
+        float inputs:metallic = 0.25
+        float inputs:roughness = 0.75
+        float inputs:ior = 1.25
+        float inputs:clearcoat = 0.5
+        float inputs:clearcoatRoughness = 0.375
+        float inputs:opacity = 0.625");
+    assert_eq!((plain.emissive, plain.metallic, plain.roughness), ([1.0, 2.0, 3.0], 0.25, 0.75));
+    assert_eq!((plain.ior, plain.clearcoat, plain.clearcoat_roughness), (1.25, 0.5, 0.375));
+    assert_eq!((plain.opacity, plain.alpha, plain.specular), (0.625, AlphaMode::Blend, None));
+    let specular = of("int inputs:useSpecularWorkflow = 1
+        color3f inputs:specularColor = (0.5, 0.25, 0.125)
+        float inputs:metallic = 1");
+    assert_eq!((specular.specular, specular.metallic), (Some([0.5, 0.25, 0.125]), 0.0));
+    assert_eq!((specular.alpha, of("").alpha), (AlphaMode::Opaque, AlphaMode::Opaque));
+}
+
+#[test]
+fn a_dome_turns_with_what_it_stands_on() {
+    let dome = r#"def DomeLight "dome" {
+        double xformOp:rotateY = 90
+        uniform token[] xformOpOrder = ["xformOp:rotateY"] }"#;
+    let scene = read(&format!("{}{dome}", mesh_with(""))).unwrap();
+    // The middle of the image, ours along -z, lay along +z: it is turned to +x.
+    let middle = scene.environment.unwrap().to_world.transform_vector3(DVec3::NEG_Z);
+    assert!((middle - DVec3::X).length() < 1e-12, "{middle}");
 }
