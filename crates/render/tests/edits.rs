@@ -109,7 +109,11 @@ fn edits_on_the_gpu_equal_those_of_the_cpu_and_move_without_new_tables() {
         let (twin_limits, limits) = (limit::limit(&tables, &twin), limits.expect("limits"));
         let mut in_use = surface.download_rows_in_use(&device).expect("rows");
         for limit in in_use.pop().expect("limit points") {
-            assert_eq!(limits[limit as usize], twin_limits[limit as usize]);
+            let (made, twin) = (&limits[limit as usize], &twin_limits[limit as usize]);
+            assert_eq!(made.position, twin.position);
+            // Of a normal's length the quotient is not everywhere rounded as here.
+            let bound = if device.is_software() { 0.0 } else { 4.0 * f32::EPSILON };
+            assert!((0..3).all(|c| (made.normal[c] - twin.normal[c]).abs() <= bound), "{made:?} {twin:?}");
         }
         let rows: Vec<u32> = in_use.into_iter().flatten().collect();
         assert!(2 * rows.len() > tables.stencils.rows.len());

@@ -4,7 +4,7 @@ use std::sync::MutexGuard;
 
 use glam::{Affine3A, Mat3, Quat, Vec2, Vec3};
 use half::f16;
-use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, DeviceOptions, Encoder};
+use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, Encoder};
 use planish_render::shading::{
     EnvironmentDesc, LightDesc, LightKind, MaterialDesc, SceneSphere, ShadePass, ShadedFrame, Shading, ShadingDesc,
     Shadows,
@@ -46,8 +46,7 @@ impl Darkroom {
 
     pub fn with_desc(cutouts: bool, desc: SurfaceDesc) -> Self {
         let turn = lab::turn();
-        let options = DeviceOptions { validation: true, selector: None, memory_budget: None };
-        let device = Device::open(&options).expect("a Vulkan device with the validation layer");
+        let device = lab::device();
         let needs = FrameNeeds {
             tex_coords: true,
             colors: true,

@@ -48,7 +48,7 @@ fn lists_of_gregory_patches_are_those_of_their_twin() {
                 let options = FrameOptions { density, selection: Selection::Dynamic, culling, object_lod: false };
                 world.move_cages(c + d);
                 let status = lab.run(&mut world.surface, spacing, &camera, &options);
-                let twin = Twin::new(&world, spacing, &camera, &options);
+                let twin = Twin::new(&lab, &world, spacing, &camera, &options);
                 let named = format!("{} from {} {spacing:?} {options:?}", world.name, camera.eye());
                 let entries = lab.entries(&world.surface);
                 for kind in PatchKind::ALL {

@@ -23,7 +23,7 @@ fn check(lab: &Lab, world: &mut World) -> [usize; 2] {
             let options = FrameOptions { density, culling, ..FrameOptions::default() };
             world.move_cages(number);
             lab.run(&mut world.surface, Spacing::Equal, &camera, &options);
-            let twin = Twin::new(world, Spacing::Equal, &camera, &options);
+            let twin = Twin::new(lab, world, Spacing::Equal, &camera, &options);
             let (entries, expected) = (lab.entries(&world.surface), &twin.entries);
             assert_eq!(
                 entries[PatchKind::Table as usize],
@@ -47,17 +47,14 @@ fn check_points(lab: &Lab, world: &World, twin: &Twin) {
         let (normals, of_limits) = vertex_normals(surface.tables(), desc.table_normals, &twin.points);
         let first = surface.tables().levels[surface.tables().basis.ring_level as usize].points.start as usize;
         let found = surface.download_vertex_normals(&lab.device).expect("normals");
-        assert_eq!(found[first..], normals[first..], "{} {:?}", world.name, desc.table_normals);
+        assert_eq!(found.len(), normals.len());
+        let named = format!("{} {:?}", world.name, desc.table_normals);
+        found[first..].iter().zip(&normals[first..]).for_each(|(made, twin)| lab.assert_normal(*made, *twin, &named));
         limits.iter_mut().zip(of_limits).for_each(|(limit, normal)| limit.normal = normal);
     }
     if !limits.is_empty() {
-        assert_eq!(
-            surface.download_limits(&lab.device).expect("limits"),
-            limits,
-            "{} {:?}",
-            world.name,
-            desc.table_normals
-        );
+        let found = surface.download_limits(&lab.device).expect("limits");
+        lab.assert_limits(&found, &limits, &format!("{} {:?}", world.name, desc.table_normals));
     }
 }
 

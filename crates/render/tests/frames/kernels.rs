@@ -155,8 +155,8 @@ impl Frame<'_> {
             assert_eq!(points[place as usize], self.twin.points[place as usize], "point {place}: {}", self.named);
         }
         let found = surface.download_limits(&self.lab.device).expect("limit points");
-        for place in limits {
-            assert_eq!(found[place as usize], self.twin.limits[place as usize], "limit point {place}: {}", self.named);
+        for place in limits.into_iter().map(|place| place as usize..place as usize + 1) {
+            self.lab.assert_limits(&found[place.clone()], &self.twin.limits[place], &self.named);
         }
     }
 
@@ -229,7 +229,7 @@ fn check_frame(
 ) {
     world.move_cages(number);
     let status = lab.run(&mut world.surface, spacing, camera, options);
-    let twin = Twin::new(world, spacing, camera, options);
+    let twin = Twin::new(lab, world, spacing, camera, options);
     let named = format!("{} from {} {spacing:?} {options:?}", world.name, camera.eye());
     Frame { lab, world, status: &status, twin: &twin, named }.check(found);
 }
@@ -281,7 +281,7 @@ fn uniform_points_and_limit_points_equal_their_twins_bit_for_bit() {
             let points = subdivide::subdivide(surface.tables(), &mesh.positions);
             assert_eq!(surface.download_points(&lab.device).expect("points"), points);
             let limits = limit::limit(surface.tables(), &points);
-            assert_eq!(surface.download_limits(&lab.device).expect("limits"), limits);
+            lab.assert_limits(&surface.download_limits(&lab.device).expect("limits"), &limits, name);
         }
     }
     lab.assert_silent();

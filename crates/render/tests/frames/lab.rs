@@ -1,13 +1,16 @@
 //! A device with the programs of all spacings.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
-use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, DeviceOptions, Encoder, Image, PipelineStatistics};
+use planish_gpu::{
+    Buffer, BufferDesc, BufferKind, Device, DeviceOptions, Encoder, Image, Instance, PipelineStatistics,
+};
 use planish_render::emit::Emitted;
 use planish_render::{
     CapturedVertex, DrawOptions, DrawPasses, DumpPasses, FrameCamera, FrameNeeds, FrameOptions, FrameStages, Layers,
     PatchKind, Spacing, Status, Surface, SurfaceDesc, Targets, View,
 };
+use planish_shaders::LimitPoint;
 use planish_subdiv::gregory::Rival;
 
 /// All spacings.
@@ -20,6 +23,17 @@ static TURN: Mutex<()> = Mutex::new(());
 /// Waits until it is this test's turn to have a device. A test that failed leaves nothing behind that the next one minds.
 pub fn turn() -> MutexGuard<'static, ()> {
     TURN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Keeps the driver loaded while the process lives: one that is loaded for every device anew has been seen to be refused after some
+/// dozens of times, as what it keeps for each thread is not given back.
+static DRIVER: OnceLock<Instance> = OnceLock::new();
+
+/// A device with the validation layer.
+pub fn device() -> Device {
+    DRIVER.get_or_init(|| Instance::new(false).expect("a Vulkan driver"));
+    let options = DeviceOptions { validation: true, selector: None, memory_budget: None };
+    Device::open(&options).expect("a Vulkan device with the validation layer")
 }
 
 /// A device, and the stages of each spacing.
@@ -59,11 +73,32 @@ impl Lab {
 
     pub fn with_needs(of: impl Fn(Spacing) -> FrameNeeds) -> Self {
         let turn = turn();
-        let options = DeviceOptions { validation: true, selector: None, memory_budget: None };
-        let device = Device::open(&options).expect("a Vulkan device with the validation layer");
+        let device = device();
         let needs = SPACINGS.map(of);
         let stages = needs.map(|needs| FrameStages::new(&device, &needs).expect("pipelines"));
         Self { device, needs, stages, _turn: turn }
+    }
+
+    /// Whether quotients and roots are rounded as the CPU rounds them. Vulkan asks that of sums and products alone; hardware may be a few
+    /// last places off in what is divided or has a length taken of it, as densities and normals.
+    pub fn is_exact(&self) -> bool {
+        self.device.is_software()
+    }
+
+    /// Asserts that limit points and their normals are their twins: positions, which are sums and products, to the bit.
+    pub fn assert_limits(&self, made: &[LimitPoint], expected: &[LimitPoint], named: &str) {
+        assert_eq!(made.len(), expected.len(), "{named}");
+        for (place, (made, expected)) in made.iter().zip(expected).enumerate() {
+            assert_eq!(made.position, expected.position, "{named}: limit point {place}");
+            self.assert_normal(made.normal, expected.normal, named);
+        }
+    }
+
+    /// Asserts that a normal is its twin.
+    pub fn assert_normal(&self, made: [f32; 3], expected: [f32; 3], named: &str) {
+        let is_near = |c: usize| (made[c] - expected[c]).abs() <= 4.0 * f32::EPSILON;
+        let is_same = made == expected || !self.is_exact() && (0..3).all(is_near);
+        assert!(is_same, "{named}: normal {made:?}, of its twin {expected:?}");
     }
 
     /// What its frames may need.

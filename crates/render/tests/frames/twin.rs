@@ -10,6 +10,7 @@ use planish_shaders::{FrameInput, LimitPoint, Object, SlotDensity};
 use planish_subdiv::selection::{Cut, Selection, SlotDensities, density_rings, select};
 use planish_subdiv::tables::{MeshRanges, Tables};
 
+use crate::lab::Lab;
 use crate::world::World;
 
 /// `OBJECT_IN_HULL` of the shaders.
@@ -38,18 +39,25 @@ pub struct TwinObject {
 }
 
 impl Twin {
-    pub fn new(world: &World, spacing: Spacing, camera: &FrameCamera, options: &FrameOptions) -> Self {
+    /// Where quotients and roots are not the CPU's, its densities are the kernels', which are checked to be near: what follows from them
+    /// does so by sums and products.
+    pub fn new(lab: &Lab, world: &World, spacing: Spacing, camera: &FrameCamera, options: &FrameOptions) -> Self {
         let surface = &world.surface;
         let (tables, cage) = (surface.tables(), world.cage());
         let input = surface.frame_input(camera, options).expect("a frame");
         let seen: Vec<bool> = surface.objects().iter().map(|object| !is_left_out(object, &input)).collect();
         let is_static = options.selection == planish_render::Selection::Static;
+        let made = (!lab.is_exact()).then(|| surface.download_densities(&lab.device).expect("densities"));
         let mut objects = Vec::new();
         for (index, object) in surface.objects().iter().enumerate() {
             let mesh = &surface.meshes()[world.objects[index].mesh];
             let of_object = || {
                 let (densities, outside) = density(tables, mesh, surface.density_scales(), object, &input, &cage);
-                (density_rings(tables, mesh, &densities, &outside), outside)
+                let mut slots = density_rings(tables, mesh, &densities, &outside);
+                if let Some(made) = &made {
+                    take_densities(&mut slots, &made[object.first_slot as usize..]);
+                }
+                (slots, outside)
             };
             objects.push(TwinObject { densities: (seen[index] || is_static).then(of_object), cut: None });
         }
@@ -92,6 +100,17 @@ impl Twin {
     /// What was selected of the objects that are not left out.
     pub fn cuts(&self) -> impl Iterator<Item = &Cut> {
         self.objects.iter().filter_map(|object| object.cut.as_ref())
+    }
+}
+
+/// Replaces densities by those that kernels made, a few last places off.
+fn take_densities(slots: &mut SlotDensities, made: &[SlotDensity]) {
+    let densities = slots.density.iter_mut().zip(made.iter().map(|made| made.density));
+    let rings = slots.ring.iter_mut().zip(made.iter().map(|made| made.ring));
+    for (expected, made) in densities.chain(rings) {
+        let is_near = (made - *expected).abs() <= 16.0 * f32::EPSILON * expected.abs();
+        assert!(made == *expected || is_near, "density {made}, of its twin {expected}");
+        *expected = made;
     }
 }
 
