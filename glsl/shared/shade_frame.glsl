@@ -3,6 +3,7 @@
 #ifndef PLANISH_SHADE_FRAME
 #define PLANISH_SHADE_FRAME
 #include "materials.glsl"
+#include "pixels.glsl"
 
 const uint LIGHT_DISTANT = 0;
 const uint LIGHT_POINT = 1;
@@ -49,8 +50,6 @@ struct IdWeight {
 };
 const uint ID_SLOTS = 8;
 
-layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Vec4s { vec4 v[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) buffer HalfVec4s { uvec2 v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer UVec4s { uvec4 v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Lights { Light v[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ShadowViews { ShadowView v[]; };

@@ -1,15 +1,11 @@
 //! A frame's images, read back.
 
-use anyhow::{Context, Result};
-use half::f16;
+use anyhow::Result;
 use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, Encoder, Image, Recorded};
-use planish_render::Targets;
+use planish_render::{Accumulation, Targets};
 
 use crate::aov::PackedLayers;
 use crate::console::WrongUsage;
-
-/// Pixels that are decoded at once, so that no second copy of the image is needed.
-const CHUNK: usize = 1 << 20;
 
 /// A buffer that the CPU reads, and the copy of an image into it.
 struct ReadBack {
@@ -41,44 +37,40 @@ impl ReadBack {
 
 /// Averages the colour of several frames of equal weight.
 pub struct ColorSum {
-    read_back: ReadBack,
-    sum: Vec<[f32; 4]>,
+    sum: Accumulation,
+    clear: Recorded,
+    add: Recorded,
     frame_count: u32,
 }
 
 impl ColorSum {
-    /// Starts with no frame.
+    /// For what these targets hold.
     pub fn new(device: &Device, targets: &Targets) -> Result<Self> {
-        Ok(Self { read_back: ReadBack::new(device, targets.color())?, sum: Vec::new(), frame_count: 0 })
+        let sum = Accumulation::new(device, targets.size())?;
+        let mut clear = Encoder::new(device, "no sample")?;
+        sum.record_clear(&mut clear);
+        let mut add = Encoder::new(device, "a sample")?;
+        sum.record(&mut add, targets);
+        Ok(Self { sum, clear: clear.finish()?, add: add.finish()?, frame_count: 0 })
+    }
+
+    /// Back to no frame, whatever became of the last ones.
+    pub fn begin(&mut self, device: &Device) -> Result<()> {
+        self.frame_count = 0;
+        device.submit_and_wait(&self.clear)?;
+        Ok(())
     }
 
     /// Adds what the targets hold.
     pub fn add(&mut self, device: &Device) -> Result<()> {
-        let Self { read_back, sum, frame_count } = self;
-        device.submit_and_wait(&read_back.copy)?;
-        sum.try_reserve_exact(read_back.pixel_count - sum.len())
-            .with_context(|| format!("no memory for {} pixels", read_back.pixel_count))?;
-        sum.resize(read_back.pixel_count, [0.0; 4]);
-        let mut offset = 0;
-        for pixels in sum.chunks_mut(CHUNK) {
-            let colors: Vec<[u16; 4]> = read_back.buffer.read(offset, pixels.len())?;
-            for (sum, color) in pixels.iter_mut().zip(&colors) {
-                for (sum, &bits) in sum.iter_mut().zip(color) {
-                    *sum += f16::from_bits(bits).to_f32();
-                }
-            }
-            offset += size_of_val(colors.as_slice()) as u64;
-        }
-        *frame_count += 1;
+        device.submit_and_wait(&self.add)?;
+        self.frame_count += 1;
         Ok(())
     }
 
-    /// The average, and back to no frame.
-    pub fn take(&mut self) -> Vec<[f32; 4]> {
-        let scale = 1.0 / std::mem::take(&mut self.frame_count).max(1) as f32;
-        let mut average = std::mem::take(&mut self.sum);
-        average.iter_mut().flatten().for_each(|channel| *channel *= scale);
-        average
+    /// The average.
+    pub fn mean(&self, device: &Device) -> Result<Vec<[f32; 4]>> {
+        Ok(self.sum.read(device, self.frame_count)?)
     }
 }
 

@@ -87,7 +87,8 @@ fn write_options(arguments: &RenderArguments) -> WriteOptions {
 /// Images that are shaded as they are drawn, with layers, and the sum of their samples.
 struct Plain {
     images: Images,
-    sum: ColorSum,
+    /// None where a scene is shaded: these are its layers then.
+    sum: Option<ColorSum>,
 }
 
 /// What is drawn for shading, and what shades it.
@@ -153,7 +154,8 @@ impl<'a> Renderer<'a> {
             if images.targets.has_vertex_colors() && !is_shaded {
                 shading::set_channels(&device, &mut session.surface, cage.scene())?;
             }
-            Some(Plain { sum: ColorSum::new(&device, &images.targets)?, images })
+            let sum = if is_shaded { None } else { Some(ColorSum::new(&device, &images.targets)?) };
+            Some(Plain { images, sum })
         };
         let shaded = if is_shaded {
             let images = session.images(View::Shaded, shading::LAYERS)?;
@@ -256,8 +258,11 @@ impl<'a> Renderer<'a> {
         let layers = self.layers()?;
         // A single sample is what was just drawn.
         let is_done = self.samples.len() == 1 && self.shaded.is_none();
-        if let Some(Plain { sum, .. }) = self.plain.as_mut().filter(|_| is_done) {
-            sum.add(&self.session.device)?;
+        if let Some(Plain { sum: Some(sum), .. }) = &mut self.plain {
+            sum.begin(&self.session.device)?;
+            if is_done {
+                sum.add(&self.session.device)?;
+            }
         }
         self.split.read_back += milliseconds(read);
         if let Some(Shaded { shading, .. }) = &self.shaded {
@@ -265,7 +270,6 @@ impl<'a> Renderer<'a> {
         }
         for (done, sample) in (0..).zip(self.samples.clone()).filter(|_| !is_done) {
             if interrupt::is_requested() {
-                self.plain.as_mut().map(|plain| plain.sum.take());
                 return Ok(None);
             }
             progress.show(frame, done, self.arguments.samples);
@@ -297,8 +301,10 @@ impl<'a> Renderer<'a> {
     fn finish(&mut self) -> Result<(Vec<[f32; 4]>, Vec<Cryptomatte>)> {
         let read = Instant::now();
         let Some(Shaded { shading, .. }) = &self.shaded else {
-            let sum = self.plain.as_mut().map(|plain| plain.sum.take()).unwrap_or_default();
-            return Ok((self.crop.pixels(&sum), Vec::new()));
+            let sum = self.plain.as_ref().and_then(|plain| plain.sum.as_ref());
+            let mean = sum.map_or_else(|| Ok(Vec::new()), |sum| sum.mean(&self.session.device))?;
+            self.split.read_back += milliseconds(read);
+            return Ok((self.crop.pixels(&mean), Vec::new()));
         };
         let shaded = shading.finish(&self.session.device, self.samples.len() as u32)?;
         let (scene, crop) = (self.cage.scene(), &self.crop);
@@ -373,7 +379,7 @@ impl<'a> Renderer<'a> {
             let start = Instant::now();
             shading.shade(&self.session.device, &images.targets, &camera, number)?;
             self.split.shade += milliseconds(start);
-        } else if let Some(Plain { images, sum }) = &mut self.plain {
+        } else if let Some(Plain { images, sum: Some(sum) }) = &mut self.plain {
             let drawn = self.session.draw(images, &camera, &cages)?;
             self.split.add(&GpuStats::new(&drawn.report.timestamps));
             let read = Instant::now();

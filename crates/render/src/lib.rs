@@ -5,6 +5,7 @@
 //! and then [`DrawPasses::record`] (the regular, transition and patch-filling passes, drawn indirectly). Stages share a stem
 //! with their shader; their CPU twins stand beside them, or in [`planish_subdiv::selection`].
 
+mod accumulate;
 mod buffers;
 pub mod camera;
 mod colors;
@@ -41,6 +42,7 @@ mod targets;
 mod upload;
 pub mod visibility;
 
+pub use accumulate::Accumulation;
 pub use camera::FrameCamera;
 pub use deform::{DeformationDesc, PoseDesc};
 pub use displacement::{DisplacementDesc, MapLayout};
