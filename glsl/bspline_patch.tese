@@ -74,8 +74,9 @@ void find_deciders(bvec4 is_on, Parameter u, Parameter v, out BorderPoint border
     limit = NONE;
     border.place = NONE;
     border_edge = NO_EDGE;
-    [[dont_unroll]] for (uint edge = 0u; edge < 4u; ++edge) {
-        uint found = is_on[edge] ? seams.v[patch_places.x].borders[edge] : NONE;
+    uint borders[4] = seams.v[patch_places.x].borders;
+    [[unroll]] for (uint edge = 0u; edge < 4u; ++edge) {
+        uint found = is_on[edge] ? borders[edge] : NONE;
         if (found != NONE) {
             word = found;
             border_edge = edge;
@@ -106,7 +107,7 @@ vec3 sharp_position(uint sharp_edges, BorderPoint border, vec4 nu, vec4 nv)
     }
     vec3 q[4];
     vec4 n = (edge & 1u) == 0u ? nu : nv;
-    [[dont_unroll]] for (uint i = 0u; i < 4u; ++i) {
+    [[unroll]] for (uint i = 0u; i < 4u; ++i) {
         q[i] = control_point[along_edge(edge, i)];
     }
     if (border.place != NONE) {
@@ -208,10 +209,7 @@ vec3 point_color(Evaluated point, uint ptex_face, vec2 uv)
     vec3 result = vec3(1.0);
     for (bool is_open = (object.flags & OBJECT_VERTEX_COLORS) != 0u; is_open; is_open = false) {
         vec3 p[16];
-        uint boundary = patch_boundary(push.patches.v[point.place].info);
-        [[dont_unroll]] for (uint i = 0u; i < 16u; ++i) {
-            p[i] = control_point_of(push.patches, scene.v.point_colors, point.place, i, boundary);
-        }
+        patch_points(push.patches, scene.v.point_colors, point.place, p);
         result = patch_position(p, point.nu, point.nv);
     }
     for (bool is_open = (object.flags & OBJECT_VARYING_COLORS) != 0u; is_open; is_open = false) {
@@ -230,10 +228,7 @@ vec3 next_position(Evaluated point)
     vec3 result = point.position;
     for (bool is_open = (object.flags & OBJECT_DEFORMS) != 0u && point.limit == NONE; is_open; is_open = false) {
         vec3 p[16];
-        uint boundary = patch_boundary(push.patches.v[point.place].info);
-        [[dont_unroll]] for (uint i = 0u; i < 16u; ++i) {
-            p[i] = control_point_of(push.patches, scene.v.next_points, point.place, i, boundary);
-        }
+        patch_points(push.patches, scene.v.next_points, point.place, p);
         result = patch_position(p, point.nu, point.nv);
     }
     return point.limit == NONE ? moved_on(object, result) : next_limit(scene, object, point.limit, result);

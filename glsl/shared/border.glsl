@@ -21,16 +21,22 @@ precise vec3 curve_position(vec3 p[4], vec4 n)
     return result;
 }
 
-// The control points around an edge of another patch; the others have no weight there.
+// The control points around an edge of another patch; the others have no weight there, and are any points. No element of the array is
+// chosen by a variable: hardware would have to keep all of it in memory, for every point of every patch.
 void border_points(BorderPoint border, inout vec3 p[16])
 {
     Object object = push.frame.v.scene.v.objects.v[patch_places.y];
     uint boundary = patch_boundary(push.patches.v[border.place].info);
-    [[dont_unroll]] for (uint i = 0u; i < 16u; ++i) {
-        p[i] = vec3(0.0);
+    vec3 q[16];
+    [[unroll]] for (uint i = 0u; i < 16u; ++i) {
+        q[i] = vec3(0.0);
         if (is_beside(border.edge, i)) {
-            p[i] = to_world(object, control_point_of(push.patches, push.points, border.place, i, boundary));
+            q[i] = stored_point(push.patches, push.points, border.place, i);
         }
+    }
+    reflect_points(q, boundary);
+    [[unroll]] for (uint i = 0u; i < 16u; ++i) {
+        p[i] = to_world(object, q[i]);
     }
 }
 
@@ -39,8 +45,14 @@ void border_curve(BorderPoint border, out vec3 q[4])
 {
     Object object = push.frame.v.scene.v.objects.v[patch_places.y];
     uint boundary = patch_boundary(push.patches.v[border.place].info);
-    [[dont_unroll]] for (uint i = 0u; i < 4u; ++i) {
-        q[i] = to_world(object, control_point_of(push.patches, push.points, border.place, along_edge(border.edge, i), boundary));
+    [[unroll]] for (uint i = 0u; i < 4u; ++i) {
+        q[i] = stored_point(push.patches, push.points, border.place, along_edge(border.edge, i));
+    }
+    bool is_along_u = (border.edge & 1u) == 0u;
+    q[0] = (boundary & (is_along_u ? 8u : 1u)) != 0u ? reflected(q[1], q[2]) : q[0];
+    q[3] = (boundary & (is_along_u ? 2u : 4u)) != 0u ? reflected(q[2], q[1]) : q[3];
+    [[unroll]] for (uint i = 0u; i < 4u; ++i) {
+        q[i] = to_world(object, q[i]);
     }
 }
 

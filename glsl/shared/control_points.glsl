@@ -61,4 +61,14 @@ void reflect_points(inout vec3 p[16], uint boundary)
         p[12 + column] = (boundary & 4u) != 0u ? reflected(p[8 + column], p[4 + column]) : p[12 + column];
     }
 }
+
+// All control points of a patch, for a thread that needs them at once. No element of the array is chosen by a variable: hardware would
+// have to keep the array in memory then, for every thread.
+void patch_points(RegularPatches patches, Points points, uint patch_place, out vec3 p[16])
+{
+    [[unroll]] for (uint i = 0u; i < 16u; ++i) {
+        p[i] = stored_point(patches, points, patch_place, i);
+    }
+    reflect_points(p, patch_boundary(patches.v[patch_place].info));
+}
 #endif

@@ -22,7 +22,7 @@ TexPoint tex_point(Object object, uint place, Parameter u, Parameter v, vec4 nu,
         return result;
     }
     vec3 p[16];
-    [[dont_unroll]] for (uint i = 0u; i < 16u; ++i) {
+    [[unroll]] for (uint i = 0u; i < 16u; ++i) {
         p[i] = vec3(scene.v.tex_coords.v[scene.v.patch_tex_coords.v[16u * place + i]], 0.0);
     }
     result.along_u = weigh_patch(p, du, nv).xy;

@@ -33,7 +33,7 @@ TexPoint tree_tex_point(SceneTables scene, Object object, uint ptex_face, vec2 u
     uint index = branch & 0x3fffffffu;
     if (branch >> 30 == TEX_QUAD) {
         vec2 p[4];
-        [[dont_unroll]] for (uint i = 0u; i < 4u; ++i) {
+        [[unroll]] for (uint i = 0u; i < 4u; ++i) {
             p[i] = scene.v.tex_coords.v[scene.v.face_tex_coords.v[4u * index + i]];
         }
         vec2 rest = 1.0 - uv;
@@ -44,7 +44,7 @@ TexPoint tree_tex_point(SceneTables scene, Object object, uint ptex_face, vec2 u
         return result;
     }
     vec3 p[16];
-    [[dont_unroll]] for (uint i = 0u; i < 16u; ++i) {
+    [[unroll]] for (uint i = 0u; i < 16u; ++i) {
         p[i] = vec3(scene.v.tex_coords.v[scene.v.patch_tex_coords.v[16u * index + i]], 0.0);
     }
     vec4 nu;
