@@ -43,11 +43,13 @@ fn middle(layers: &Layers) -> f64 {
     sum / weights
 }
 
-/// A square that moves along x by 0.3 a frame, from -1.5 on.
-fn moving(camera: &str, light: &str) -> Stage {
-    let path = r#"double3 xformOp:translate.timeSamples = { 0: (-1.5, 0, 0), 10: (1.5, 0, 0) }
+/// Along x by 0.3 a frame, from -1.5 on.
+const PATH: &str = r#"double3 xformOp:translate.timeSamples = { 0: (-1.5, 0, 0), 10: (1.5, 0, 0) }
     uniform token[] xformOpOrder = ["xformOp:translate"]"#;
-    Stage::new(camera).with_rectangle("square", [-0.25, -0.25], [0.25, 0.25], 0.0, path).with(light)
+
+/// A square that moves.
+fn moving(camera: &str, light: &str) -> Stage {
+    Stage::new(camera).with_rectangle("square", [-0.25, -0.25], [0.25, 0.25], 0.0, PATH).with(light)
 }
 
 #[test]
@@ -72,6 +74,43 @@ fn an_open_shutter_sees_what_moves_where_it_is_meanwhile() {
         assert_eq!(own.frames_per_second, Some((48, 1)));
         let time = AttributeValue::F32((5.0 / RATE) as f32);
         assert_eq!(own.other.get(&Text::from("time")), Some(&time));
+    }
+}
+
+#[test]
+fn shadows_move_while_the_shutter_is_open() {
+    let folder = temporary();
+    let scene = Stage::new("")
+        .with_rectangle("floor", [-3.0, -3.0], [3.0, 3.0], 0.0, BOUND)
+        .with_rectangle("plate", [0.7, -0.25], [1.2, 0.25], 1.0, &format!("{BOUND}\n{PATH}"))
+        .with_material("Dull", DULL)
+        .with(&sun(0.0))
+        .write(folder.path());
+    let lit = 3.0 / PI * 0.5_f64.sqrt();
+    // Where the shadow lies along x, its area, and how dark it is at most.
+    let shadow = |flags: &str| {
+        let red = layers(&scene, &format!("--frames 5 --samples 16 {SHARP} {flags}")).floats("R");
+        let (mut sum, mut darkness, mut darkest) = (0.0, 0.0, 0.0_f64);
+        for (pixel, red) in red.into_iter().enumerate() {
+            // Not the last bits of what is lit.
+            let dark = Some(1.0 - f64::from(red) / lit).filter(|&dark| dark > 0.01).unwrap_or(0.0);
+            sum += dark * place(pixel, SIDE)[0];
+            darkness += dark;
+            darkest = darkest.max(dark);
+        }
+        (sum / darkness, darkness * (4.0 / SIDE as f64).powi(2), darkest)
+    };
+    // A unit to the left of the plate, which is a unit up; the bias of the shadow map moves it by some of its texels.
+    let (still, _, darkest) = shadow("--shutter 0,0");
+    assert!((still - -0.05).abs() < 0.1 && darkest > 0.99, "{still}, {darkest}");
+    for [open, close] in [[0.0, 2.0], [-2.0, 1.0]] {
+        let (found, area, darkest) = shadow(&format!("--shutter {open},{close}"));
+        let expected = still + 0.15 * (open + close);
+        assert!((found - expected).abs() < 0.03, "{open} to {close}: {found}, expected {expected}");
+        assert!((area - 0.25).abs() < 0.03, "{open} to {close}: a shadow of {area}");
+        // It is half a unit wide, and passes by.
+        let share = 0.5 / (0.3 * (close - open));
+        assert!((darkest - share).abs() < 0.1, "{open} to {close}: {darkest} dark, expected {share}");
     }
 }
 

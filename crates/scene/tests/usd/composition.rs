@@ -20,21 +20,33 @@ fn what_composition_multiplies_is_bounded() {
     assert_memory();
 }
 
+/// Two classes a level, each of which leads to both of the next.
+fn doubling(arc: &str, levels: usize, class: impl Fn(&str) -> String) -> String {
+    let level = |n: usize| {
+        let to = format!("[</A{0}{BELOW}>, </B{0}{BELOW}>]", n + 1);
+        ["A", "B"].map(|side| format!("class \"{side}{n}\" {}\n", class(&format!("({arc} = {to})")))).concat()
+    };
+    let last = ["A", "B"].map(|side| format!("class \"{side}{levels}\" {}\n", class(""))).concat();
+    format!("{}{last}", (0..levels).map(level).collect::<String>())
+}
+
+/// Where arcs lead within a class, and what makes it so.
+const BELOW: &str = "/x/y";
+fn below(arcs: &str) -> String {
+    format!("{{ def \"x\" {{ def \"y\" {arcs} {{}} }} }}")
+}
+
+/// A layer with a mesh.
+fn layer(head: &str, content: &str) -> String {
+    format!("#usda 1.0\n{head}{}{content}", mesh_with(""))
+}
+
+const MULTIPLIED: &str = "a prim composed of more than 4000 places, expected fewer: references of references multiply";
+
 #[test]
 fn references_that_double_are_refused_before_they_are_composed() {
-    /// Two classes a level, each of which leads to both of the next.
-    fn doubling(arc: &str, levels: usize, class: impl Fn(&str) -> String) -> String {
-        let level = |n: usize| {
-            let to = format!("[</A{0}{BELOW}>, </B{0}{BELOW}>]", n + 1);
-            ["A", "B"].map(|side| format!("class \"{side}{n}\" {}\n", class(&format!("({arc} = {to})")))).concat()
-        };
-        let last = ["A", "B"].map(|side| format!("class \"{side}{levels}\" {}\n", class(""))).concat();
-        format!("{}{last}", (0..levels).map(level).collect::<String>())
-    }
-    const BELOW: &str = "/x/y";
-    let below = |arcs: &str| format!("{{ def \"x\" {{ def \"y\" {arcs} {{}} }} }}");
-    let read = |content: &str| read_layers(&[("a.usda", format!("#usda 1.0\n{}{content}", mesh_with("")).as_bytes())]);
-    let multiplied = "a prim composed of more than 4000 places, expected fewer: references of references multiply";
+    let read = |content: &str| read_layers(&[("a.usda", layer("", content).as_bytes())]);
+    let multiplied = MULTIPLIED;
     for arc in ["references", "payload", "inherits", "specializes"] {
         for levels in [14, 40] {
             let root = "def \"r\" (references = </A0/x/y>) {}\n";
@@ -65,6 +77,89 @@ fn references_that_double_are_refused_before_they_are_composed() {
     let variants: String = (0..40).map(|n| format!("\"v{n}\" (references = </A0/x/y>) {{}}\n")).collect();
     let set = format!("{tree}def \"s\" (variants = {{ string v = \"v3\" }} prepend variantSets = \"v\") {{");
     read(&format!("{set} variantSet \"v\" = {{ {variants} }} }}")).unwrap();
+    // Classes of classes do not multiply, however long their chain; beside each of many references they do.
+    let chain = |arc: &str, length: usize, more: &str| {
+        let level = |n: usize| format!("class \"A{n}\" ({arc} = </A{}> {more}) {{}}\n", n + 1);
+        let last = format!("class \"A{length}\" {{}}\nclass \"K\" {{}}\n");
+        format!("def \"r\" (references = </A0>) {{}}\n{}{last}", (0..length).map(level).collect::<String>())
+    };
+    read(&chain("inherits", 60, "")).unwrap();
+    read(&chain("specializes", 60, "")).unwrap();
+    read(&chain("references", 60, "")).unwrap();
+    read(&chain("references", 20, "inherits = </K>")).unwrap();
+    let error = read(&chain("references", 80, "inherits = </K>")).unwrap_err();
+    assert!(error.contains(multiplied), "{error}");
+    // Inside of one that is selected they multiply.
+    let in_variant = |arcs: &str| {
+        let set = format!("variantSet \"v\" = {{ \"a\" {arcs} {{}} \"b\" {{}} }}");
+        let sets = "(variants = { string v = \"a\" } prepend variantSets = \"v\")";
+        format!("{{ def \"x\" {{ def \"y\" {sets} {{ {set} }} }} }}")
+    };
+    let root = "def \"r\" (references = </A0/x/y>) {}\n";
+    let error = read(&format!("{root}{}", doubling("references", 24, in_variant))).unwrap_err();
+    assert!(error.contains(multiplied), "{error}");
+}
+
+#[test]
+fn what_doubles_in_another_layer_is_refused_however_it_is_reached() {
+    let doubled = doubling("references", 30, below);
+    let root = "def \"r\" (references = </A0/x/y>) {}\n";
+    let zip = package(&[("root.usda", layer("", &doubled).as_bytes())], 1);
+    let other = layer("", &doubled);
+    for (way, text, name, content) in [
+        ("a sublayer", layer("(subLayers = [@./other.usda@])\n", root), "other.usda", other.as_bytes()),
+        ("a package", layer("", "def \"r\" (references = @./other.usdz@</A0/x/y>) {}\n"), "other.usdz", zip.as_slice()),
+        (
+            "an expression",
+            layer(
+                "(expressionVariables = { string NAME = \"other\" })\n",
+                "def \"r\" (references = @`\"./${NAME}.usda\"`@</A0/x/y>) {}\n",
+            ),
+            "other.usda",
+            other.as_bytes(),
+        ),
+    ] {
+        let error = read_layers(&[("a.usda", text.as_bytes()), (name, content)]).unwrap_err();
+        assert!(error.contains(MULTIPLIED), "{way}: {error}");
+    }
+}
+
+#[test]
+fn meshes_are_shared_where_all_that_they_are_made_of_is_the_same() {
+    let mesh = "def Mesh \"m\" {
+        int[] faceVertexCounts = [3, 3]
+        int[] faceVertexIndices = [0, 1, 2, 0, 2, 3]
+        point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+        def GeomSubset \"s\" { int[] indices = [0]\nuniform token elementType = \"face\"\nuniform token familyName = \"materialBind\" }
+    }\n";
+    let placed =
+        |name: &str, over: &str| format!("def \"{name}\" (references = </big>) {{ over \"m\" {{ {over} }} }}\n");
+    let count = |over: &str| {
+        let places = [placed("a", ""), placed("b", ""), placed("c", over)].concat();
+        let scene = read(&format!("class \"big\" {{ {mesh} }}\n{places}")).unwrap();
+        assert_eq!(scene.instances.len(), 3, "{over}");
+        scene.meshes.len()
+    };
+    for over in ["", "token visibility = \"inherited\"", "float3[] extent = [(0, 0, 0), (1, 1, 0)]"] {
+        assert_eq!(count(over), 1, "{over}");
+    }
+    for over in [
+        "point3f[] points = [(0, 0, 1), (1, 0, 0), (1, 1, 0), (0, 1, 0)]",
+        "uniform token subdivisionScheme = \"none\"",
+        "int[] cornerIndices = [0]\nfloat[] cornerSharpnesses = [10]",
+        "over \"s\" { int[] indices = [1] }",
+    ] {
+        assert_eq!(count(over), 2, "{over}");
+    }
+    // What moves may do so at other times in each place.
+    let moving = "class \"big\" { def Mesh \"m\" {
+        int[] faceVertexCounts = [3]
+        int[] faceVertexIndices = [0, 1, 2]
+        point3f[] points.timeSamples = { 0: [(0, 0, 0), (1, 0, 0), (1, 1, 0)], 10: [(0, 0, 1), (1, 0, 0), (1, 1, 0)] }
+    } }\n";
+    let places = "def \"a\" (references = </big>) {}\ndef \"b\" (references = </big> (offset = 5)) {}\n";
+    let scene = read(&format!("{moving}{places}")).unwrap();
+    assert_eq!((scene.meshes.len(), scene.instances.len()), (2, 2));
 }
 
 #[test]

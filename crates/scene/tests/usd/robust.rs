@@ -244,6 +244,8 @@ fn tuples_have_as_many_elements_as_their_type() {
         ("uniform float3[] a = [(1, 2, 3), (1, 2, 3, 4)]", 4, 3),
         ("texCoord2f[] a = [(1 2)(3)]", 1, 2),
         ("quatf a = (1, 0, 0)", 3, 4),
+        ("color3h a = (1, 2)", 2, 3),
+        ("point3d[] a = [(1, 2, 3), (1, 2)]", 2, 3),
         ("matrix4d a = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1), (0, 0, 0, 1))", 3, 4),
         ("double3 a.timeSamples = { 0: (1, 2, 3), 1: (1, 2) }", 2, 3),
         ("bool a = true\nfloat3 scale = (1)", 1, 3),

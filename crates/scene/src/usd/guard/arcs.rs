@@ -45,7 +45,7 @@ struct Arc {
     path: Option<String>,
     /// The set and the variant that it is in.
     variant: Option<(String, String)>,
-    /// Whether it is to a class, which is looked up once more for each arc that leads here.
+    /// Whether it is to a class, which is looked up for each reference that leads here too, in all that those lead to.
     is_class: bool,
 }
 
@@ -90,7 +90,7 @@ impl Arcs {
         let Some(layer) = self.root.clone() else { return Ok(()) };
         let mut visits = MAX_VISITS;
         let place = Place { layer, path: path.to_owned() };
-        let places = self.count(&place, &mut Vec::new(), &mut visits);
+        let places = self.count(&place, &mut Vec::new(), 0, &mut visits);
         if places <= MAX_PLACES {
             return Ok(());
         }
@@ -98,8 +98,9 @@ impl Arcs {
         Err(Fault::new(path, found, "fewer: references of references multiply"))
     }
 
-    /// Places that a place leads to, with itself; stops soon after there are too many.
-    fn count(&self, place: &Place, chain: &mut Vec<Place>, visits: &mut u64) -> u64 {
+    /// Places that a place leads to, with itself; stops soon after there are too many. So many of the chain that leads here are
+    /// references.
+    fn count(&self, place: &Place, chain: &mut Vec<Place>, references: u64, visits: &mut u64) -> u64 {
         *visits = visits.saturating_sub(1);
         if *visits == 0 || chain.len() >= MAX_CHAIN {
             return u64::MAX;
@@ -111,7 +112,7 @@ impl Arcs {
         for layer in self.stack(&place.layer) {
             for above in ancestors(&place.path) {
                 for arc in layer.arcs.get(above).into_iter().flatten() {
-                    let found = self.count_targets(arc, &place.path[above.len()..], chain, visits);
+                    let found = self.count_targets(arc, &place.path[above.len()..], chain, references, visits);
                     match &arc.variant {
                         None => total = total.saturating_add(found),
                         Some((set, variant)) => {
@@ -132,8 +133,9 @@ impl Arcs {
     }
 
     /// Places that an arc of the last of a chain leads to, so much below its target.
-    fn count_targets(&self, arc: &Arc, below: &str, chain: &mut Vec<Place>, visits: &mut u64) -> u64 {
+    fn count_targets(&self, arc: &Arc, below: &str, chain: &mut Vec<Place>, references: u64, visits: &mut u64) -> u64 {
         let mut total: u64 = 0;
+        let references = references + u64::from(!arc.is_class);
         for target in self.targets(&arc.leads, &chain[chain.len() - 1].layer) {
             let default = || self.layers.get(&target).and_then(|layer| layer.default.as_ref());
             let Some(path) = arc.path.as_ref().or_else(default) else {
@@ -144,9 +146,8 @@ impl Arcs {
             let next = Place { layer: target, path: format!("{path}{below}") };
             // Who leads back to itself is told by the crate, and not followed.
             if !chain.iter().any(|place| next.is_around(place)) {
-                let above = chain.len() as u64;
-                let times = if arc.is_class { 1 + above * above / 4 } else { 1 };
-                total = total.saturating_add(self.count(&next, chain, visits).saturating_mul(times));
+                let lookups = if arc.is_class { references * references / 4 } else { 0 };
+                total = total.saturating_add(self.count(&next, chain, references, visits)).saturating_add(lookups);
             }
         }
         total

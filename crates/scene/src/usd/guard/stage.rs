@@ -24,6 +24,9 @@ impl Stage {
     pub fn prim(&self, path: impl Into<sdf::Path>) -> Result<usd::Prim, Fault> {
         let prim = self.stage.prim(path);
         self.findings.check_places(prim.path().as_str())?;
+        // Composed now: layers that are opened on the way are counted for the prim that was asked for last. What fails is told by
+        // whoever reads it.
+        let _ = prim.specifier();
         Ok(prim)
     }
 
