@@ -1,12 +1,13 @@
 //! What method table's options change, and what they leave as it is.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use planish_tests::cage::Cage;
 use planish_tests::folder::temporary;
-use planish_tests::ply::Dump;
+use planish_tests::ply::{Dump, Vertex};
 use planish_tests::program::Planish;
-use planish_tests::repository::scheme_scene;
+use planish_tests::repository::{scene, scheme_scene};
 use planish_tests::weld::{Weld, faults};
 use serde_json::Value;
 
@@ -61,4 +62,30 @@ fn each_way_of_normals_has_its_own_on_the_same_points() {
     // The later the geometric normals are taken, the nearer is what is made of them to the surface's own.
     let [far, near, nearest] = [1, 2, 3].map(|way| apart(&dumps[way], &dumps[0])[1]);
     assert!(far > near && near > nearest, "{far}, {near}, {nearest} degrees");
+}
+
+#[test]
+fn geometric_normals_are_interpolated_between_those_of_the_mesh_split_once() {
+    let (folder, mesh) = (temporary(), scene("genus_2"));
+    let vertices = |way: &str| -> Vec<_> {
+        let flags = format!("--scheme catmull-clark --table-normals {way}");
+        Dump::read(&dump(folder.path(), &mesh, &flags)).unwrap().vertices().collect()
+    };
+    // The largest angle at the middle of an edge of the split mesh, to the mean of the normals at its ends: eight segments are two such
+    // edges of four.
+    let largest_angle = |way: &str| {
+        let place = |vertex: &Vertex| (vertex.face, vertex.uv.map(|t| (8.0 * t).round() as i32));
+        let normals: HashMap<_, _> = vertices(way).iter().map(|vertex| (place(vertex), vertex.normal)).collect();
+        let mut largest = 0.0_f32;
+        for (&(face, [u, v]), normal) in normals.iter().filter(|((_, [u, v]), _)| u % 4 == 2 && v % 4 == 0) {
+            let [a, b] = [u - 2, u + 2].map(|u| normals[&(face, [u, v])]);
+            let sum: [f32; 3] = std::array::from_fn(|c| a[c] + b[c]);
+            let length = |v: [f32; 3]| v.iter().map(|c| c * c).sum::<f32>().sqrt();
+            let off: [f32; 3] = std::array::from_fn(|c| sum[c] / length(sum) - normal[c]);
+            largest = largest.max(length(off).to_degrees());
+        }
+        largest
+    };
+    let [geometric, subdivision] = ["geometric", "subdivision1"].map(largest_angle);
+    assert!(geometric < 1e-4 && subdivision > 1.0, "{geometric} and {subdivision} degrees");
 }
