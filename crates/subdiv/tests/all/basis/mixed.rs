@@ -174,3 +174,20 @@ fn tables_of_the_schemes_are_not_the_same_where_triangles_and_quads_meet() {
     let of = |scheme: Scheme| Tables::of_basis(mesh, &options(scheme, 1)).expect("tables").basis;
     assert!(of(Scheme::LoopStam) != of(Scheme::CatmullClark));
 }
+
+#[test]
+fn an_irregular_mixture_has_the_mask_of_its_shares() {
+    // A quad and four triangles around vertex 0, which alone is lifted: of the points of level 1 its own is the highest.
+    let place = |i: u32| [(i as f32).cos(), (i as f32).sin(), 0.0];
+    let positions = std::iter::once([0.0, 0.0, 1.0]).chain((0..6).map(place)).collect();
+    let fan = |i: u32| vec![0, i, i % 6 + 1];
+    let mesh = mesh(positions, &[vec![0, 1, 2, 3], fan(3), fan(4), fan(5), fan(6)]);
+    let (tables, points) = tables(&mesh, Scheme::LoopStam);
+    let level = tables.levels[1].points.clone();
+    let highest =
+        points[level.start as usize..level.end as usize].iter().fold(0.0_f64, |most, p| most.max(f64::from(p[2])));
+    // By hand: four fifths of Loop's 0.791396 for 4 + 3/2 triangles, a fifth of 3 / n for n = 1 + 4 / 1.5 quads, is 0.796753; middles of
+    // edges lie at 1/2, the quad's centre at 1/4.
+    let expected = 1.0 - 0.796_753 * (1.0 - 5.25 / 11.0);
+    assert!((highest - expected).abs() < 2e-6, "{highest}, expected {expected}");
+}
