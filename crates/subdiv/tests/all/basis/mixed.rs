@@ -184,8 +184,7 @@ fn an_irregular_mixture_has_the_mask_of_its_shares() {
     let mesh = mesh(positions, &[vec![0, 1, 2, 3], fan(3), fan(4), fan(5), fan(6)]);
     let (tables, points) = tables(&mesh, Scheme::LoopStam);
     let level = tables.levels[1].points.clone();
-    let highest =
-        points[level.start as usize..level.end as usize].iter().fold(0.0_f64, |most, p| most.max(f64::from(p[2])));
+    let highest = points[level.start as usize..level.end as usize].iter().fold(0.0_f64, |most, p| most.max(p[2]));
     // By hand: four fifths of Loop's 0.791396 for 4 + 3/2 triangles, a fifth of 3 / n for n = 1 + 4 / 1.5 quads, is 0.796753; middles of
     // edges lie at 1/2, the quad's centre at 1/4.
     let expected = 1.0 - 0.796_753 * (1.0 - 5.25 / 11.0);
