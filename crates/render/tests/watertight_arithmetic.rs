@@ -14,7 +14,7 @@ const EVALUATION: [&str; 14] = [
     "curve_position",
     "without_sign_of_zero",
     "border_point",
-    "reflected_point",
+    "reflected",
     "to_world",
     "normal_to_world",
     "precise_cross",
@@ -37,8 +37,16 @@ const DISPLACEMENT: [&str; 12] = [
     "linear",
 ];
 /// Of the patches that are no bicubic ones.
-const EDGES: [&str; 7] =
-    ["weigh_ends", "edge_normal", "bernstein", "without_sign_of_zero", "border_point", "over_36", "curve_position"];
+const EDGES: [&str; 8] = [
+    "weigh_ends",
+    "edge_normal",
+    "bernstein",
+    "without_sign_of_zero",
+    "border_point",
+    "reflected",
+    "over_36",
+    "curve_position",
+];
 /// Of faces that are evaluated by table.
 const TABLES: [&str; 9] = [
     "table_row",
