@@ -253,3 +253,16 @@ fn frames_are_numbered_and_those_of_a_still_scene_are_equal() {
     assert_eq!(names, ["cube.008.png", "cube.010.png", "cube.012.png"]);
     assert_eq!(files.values().collect::<HashSet<_>>().len(), 1);
 }
+
+#[test]
+fn an_image_that_is_read_in_parts_is_whole() {
+    // Two parts, of which the crop lies in the second.
+    let flags = format!("--size 320x240 {OBLIQUE} --tess 4 --samples 2");
+    let whole = layers("genus_2", &flags);
+    let part = layers("genus_2", &format!("{flags} --crop 100,210,120x30"));
+    for channel in ["R", "G", "B", "A"] {
+        let (whole, part) = (whole.floats(channel), part.floats(channel));
+        let rows = (210..240).flat_map(|y| &whole[320 * y + 100..320 * y + 220]);
+        assert!(rows.clone().any(|&value| value > 0.0) && rows.eq(&part), "{channel}");
+    }
+}

@@ -1,14 +1,18 @@
 //! A frame's images, read back.
 
 use anyhow::Result;
+use half::f16;
 use planish_gpu::{Buffer, BufferDesc, BufferKind, Device, Encoder, Image, Recorded};
 use planish_render::{Accumulation, Targets};
 
 use crate::aov::PackedLayers;
 use crate::console::WrongUsage;
 
+/// Pixels that are decoded at once, so that no second copy of the image is needed.
+const CHUNK: usize = 1 << 20;
+
 /// A buffer that the CPU reads, and the copy of an image into it.
-struct ReadBack {
+pub struct ReadBack {
     buffer: Buffer,
     copy: Recorded,
     pixel_count: usize,
@@ -29,14 +33,31 @@ impl ReadBack {
         Ok(self.buffer.read(0, self.pixel_count)?)
     }
 
+    /// Four halves a pixel, which were copied before.
+    fn halves(&self) -> Result<Vec<[f32; 4]>> {
+        let mut pixels = Vec::with_capacity(self.pixel_count);
+        while pixels.len() < self.pixel_count {
+            let count = CHUNK.min(self.pixel_count - pixels.len());
+            let halves: Vec<[u16; 4]> = self.buffer.read((pixels.len() * size_of::<[u16; 4]>()) as u64, count)?;
+            pixels.extend(halves.iter().map(|pixel| pixel.map(|bits| f16::from_bits(bits).to_f32())));
+        }
+        Ok(pixels)
+    }
+
     fn floats(&self, device: &Device) -> Result<Vec<[f32; 4]>> {
         device.submit_and_wait(&self.copy)?;
         Ok(self.buffer.read(0, self.pixel_count)?)
     }
 }
 
-/// Averages the colour of several frames of equal weight.
-pub struct ColorSum {
+/// Averages the colour of several frames of equal weight. Of one alone there is no sum, which would take three times the memory.
+pub enum ColorSum {
+    One(Box<ReadBack>),
+    Several(Box<FrameSum>),
+}
+
+/// The sum of so many frames.
+pub struct FrameSum {
     sum: Accumulation,
     clear: Recorded,
     add: Recorded,
@@ -44,33 +65,47 @@ pub struct ColorSum {
 }
 
 impl ColorSum {
-    /// For what these targets hold.
-    pub fn new(device: &Device, targets: &Targets) -> Result<Self> {
+    /// For so many samples of what these targets hold.
+    pub fn new(device: &Device, targets: &Targets, sample_count: usize) -> Result<Self> {
+        if sample_count == 1 {
+            return Ok(Self::One(Box::new(ReadBack::new(device, targets.color())?)));
+        }
         let sum = Accumulation::new(device, targets.size())?;
         let mut clear = Encoder::new(device, "no sample")?;
         sum.record_clear(&mut clear);
         let mut add = Encoder::new(device, "a sample")?;
         sum.record(&mut add, targets);
-        Ok(Self { sum, clear: clear.finish()?, add: add.finish()?, frame_count: 0 })
+        let (clear, add) = (clear.finish()?, add.finish()?);
+        Ok(Self::Several(Box::new(FrameSum { sum, clear, add, frame_count: 0 })))
     }
 
     /// Back to no frame, whatever became of the last ones.
     pub fn begin(&mut self, device: &Device) -> Result<()> {
-        self.frame_count = 0;
-        device.submit_and_wait(&self.clear)?;
+        if let Self::Several(several) = self {
+            several.frame_count = 0;
+            device.submit_and_wait(&several.clear)?;
+        }
         Ok(())
     }
 
     /// Adds what the targets hold.
     pub fn add(&mut self, device: &Device) -> Result<()> {
-        device.submit_and_wait(&self.add)?;
-        self.frame_count += 1;
+        match self {
+            Self::One(read_back) => device.submit_and_wait(&read_back.copy)?,
+            Self::Several(several) => {
+                several.frame_count += 1;
+                device.submit_and_wait(&several.add)?
+            }
+        };
         Ok(())
     }
 
     /// The average.
     pub fn mean(&self, device: &Device) -> Result<Vec<[f32; 4]>> {
-        Ok(self.sum.read(device, self.frame_count)?)
+        match self {
+            Self::One(read_back) => read_back.halves(),
+            Self::Several(several) => Ok(several.sum.read(device, several.frame_count)?),
+        }
     }
 }
 

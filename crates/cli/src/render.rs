@@ -154,7 +154,8 @@ impl<'a> Renderer<'a> {
             if images.targets.has_vertex_colors() && !is_shaded {
                 shading::set_channels(&device, &mut session.surface, cage.scene())?;
             }
-            let sum = if is_shaded { None } else { Some(ColorSum::new(&device, &images.targets)?) };
+            let count = arguments.samples as usize;
+            let sum = if is_shaded { None } else { Some(ColorSum::new(&device, &images.targets, count)?) };
             Some(Plain { images, sum })
         };
         let shaded = if is_shaded {

@@ -8,6 +8,9 @@ use crate::program::compute_pipeline;
 use crate::targets::Targets;
 use crate::upload::{address, array};
 
+/// Pixels that are read back at once: a buffer for all of a large image would be as large as the sum.
+const CHUNK: u32 = 1 << 16;
+
 /// The sum of samples of equal weight. Nothing is read back until all are there.
 pub struct Accumulation {
     pipeline: ComputePipeline,
@@ -18,14 +21,15 @@ pub struct Accumulation {
 }
 
 impl Accumulation {
-    /// For images of a size in pixels: 40 bytes a pixel.
+    /// For images of a size in pixels: 24 bytes a pixel.
     ///
     /// # Errors
     /// No memory, or the driver fails.
     pub fn new(device: &Device, size: [u32; 2]) -> Result<Self, Error> {
         let pixel_count = size[0] * size[1];
         let sum = array::<[f32; 4]>(device, "sum of samples", pixel_count)?;
-        let read = BufferDesc { name: "sum read back", kind: BufferKind::Readback, size: sum.size() };
+        let size = u64::from(pixel_count.min(CHUNK)) * size_of::<[f32; 4]>() as u64;
+        let read = BufferDesc { name: "sum read back", kind: BufferKind::Readback, size };
         Ok(Self {
             pipeline: compute_pipeline(device, &planish_shaders::accumulate_comp::PROGRAM)?,
             colors: array::<[u16; 4]>(device, "colours of a sample", pixel_count)?,
@@ -63,14 +67,17 @@ impl Accumulation {
     /// # Errors
     /// The device is lost.
     pub fn read(&self, device: &Device, sample_count: u32) -> Result<Vec<[f32; 4]>, Error> {
-        let mut encoder = Encoder::new(device, "sum read back")?;
-        let size = self.sum.size();
-        let copy = Transfer::Copy { from: &self.sum, from_offset: 0, to: &self.read_back, to_offset: 0, size };
-        encoder.transfer(&[copy]);
-        device.submit_and_wait(&encoder.finish()?)?;
-        let mut mean: Vec<[f32; 4]> = self.read_back.read(0, self.pixel_count as usize)?;
         let scale = 1.0 / sample_count.max(1) as f32;
-        mean.iter_mut().flatten().for_each(|channel| *channel *= scale);
+        let mut mean: Vec<[f32; 4]> = Vec::with_capacity(self.pixel_count as usize);
+        while let Some(left @ 1..) = self.pixel_count.checked_sub(mean.len() as u32) {
+            let [from_offset, size] = [mean.len() as u64, u64::from(left.min(CHUNK))].map(|pixels| 16 * pixels);
+            let mut encoder = Encoder::new(device, "sum read back")?;
+            let (from, to) = (&self.sum, &self.read_back);
+            encoder.transfer(&[Transfer::Copy { from, from_offset, to, to_offset: 0, size }]);
+            device.submit_and_wait(&encoder.finish()?)?;
+            let sums: Vec<[f32; 4]> = to.read(0, left.min(CHUNK) as usize)?;
+            mean.extend(sums.iter().map(|sum| sum.map(|channel| channel * scale)));
+        }
         Ok(mean)
     }
 }
