@@ -70,12 +70,14 @@ impl Accumulation {
         let scale = 1.0 / sample_count.max(1) as f32;
         let mut mean: Vec<[f32; 4]> = Vec::with_capacity(self.pixel_count as usize);
         while let Some(left @ 1..) = self.pixel_count.checked_sub(mean.len() as u32) {
-            let [from_offset, size] = [mean.len() as u64, u64::from(left.min(CHUNK))].map(|pixels| 16 * pixels);
+            let bytes = |pixels: usize| (pixels * size_of::<[f32; 4]>()) as u64;
+            let count = left.min(CHUNK) as usize;
+            let (from_offset, size) = (bytes(mean.len()), bytes(count));
             let mut encoder = Encoder::new(device, "sum read back")?;
             let (from, to) = (&self.sum, &self.read_back);
             encoder.transfer(&[Transfer::Copy { from, from_offset, to, to_offset: 0, size }]);
             device.submit_and_wait(&encoder.finish()?)?;
-            let sums: Vec<[f32; 4]> = to.read(0, left.min(CHUNK) as usize)?;
+            let sums: Vec<[f32; 4]> = to.read(0, count)?;
             mean.extend(sums.iter().map(|sum| sum.map(|channel| channel * scale)));
         }
         Ok(mean)

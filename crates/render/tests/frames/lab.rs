@@ -25,8 +25,8 @@ pub fn turn() -> MutexGuard<'static, ()> {
     TURN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Keeps the driver loaded while the process lives: one that is loaded for every device anew has been seen to be refused after some
-/// dozens of times, as what it keeps for each thread is not given back.
+/// Keeps the driver loaded while the process lives: a hardware driver that was loaded for every device anew has been seen to be refused
+/// after some dozens of times. Why is not known.
 static DRIVER: OnceLock<Instance> = OnceLock::new();
 
 /// A device with the validation layer.
